@@ -1,0 +1,1 @@
+//! Verdict on a mesh: levels of validity, each a typed report.

@@ -1,0 +1,1 @@
+//! Homology of complexes: Betti numbers over Q and prime fields, integral torsion.

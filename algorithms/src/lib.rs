@@ -1,0 +1,8 @@
+//! The mathematics of Crosscap: models of the traits of `crosscap-core` that need nobody
+//! else's engine, the triangulator, homology, and the verdict on a mesh.
+
+pub mod certificate;
+pub mod homology;
+pub mod isomap;
+pub mod pieces;
+pub mod surfaces;

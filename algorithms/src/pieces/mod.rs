@@ -1,0 +1,1 @@
+//! What a complex is made of: undoing the immersion and naming the pieces.

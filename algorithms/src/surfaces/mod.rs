@@ -1,0 +1,1 @@
+//! Sample surfaces with known truth.

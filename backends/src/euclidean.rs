@@ -1,0 +1,1 @@
+//! Exact Euclidean neighborhoods in any dimension, on kiddo.

@@ -1,0 +1,1 @@
+//! Doors to the outside: point clouds and meshes in the formats people use.

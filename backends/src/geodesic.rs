@@ -1,0 +1,1 @@
+//! Geodesic distances over a neighbor graph, on petgraph.

@@ -1,0 +1,7 @@
+//! Other people's engines behind Crosscap's traits, and the doors to the outside.
+
+pub mod euclidean;
+pub mod files;
+pub mod geodesic;
+pub mod linear_program;
+pub mod picture;

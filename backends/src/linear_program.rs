@@ -1,0 +1,1 @@
+//! The paper's linear program (6), on microlp.

@@ -1,0 +1,35 @@
+//! Local coordinates for a neighborhood.
+
+use crate::Error;
+
+/// Coordinates of `k` points in a chart of dimension `dimension`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    /// Dimension of the chart.
+    pub dimension: usize,
+    /// `k * dimension` coordinates in row order, in the unit of the data.
+    pub coordinates: Vec<f64>,
+    /// Share of the squared distances that the chart does not carry, 0 (flat data) to 1.
+    pub distortion: f64,
+}
+
+/// Lays a neighborhood out in a space of low dimension, from its distances alone.
+///
+/// # Laws
+/// - *flat data*: distances of points of a flat `dimension`-space are reproduced within rounding;
+/// - *distortion*: 0 for flat data, and growing with the share that is lost;
+/// - *motion*: a chart depends on the distances only;
+/// - *finite*: finite distances give finite coordinates.
+///
+/// Orientation is arbitrary: callers must not rely on it.
+pub trait LocalChart: Sync {
+    /// Chart of `count` points from their symmetric matrix of distances (row order, the
+    /// unit of the data). Point 0 is the center of the neighborhood.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] when `distances` is not `count * count` long or not finite.
+    fn chart(&self, count: usize, distances: &[f64], dimension: usize) -> Result<Chart, Error>;
+
+    /// Short name for reports.
+    fn name(&self) -> &str;
+}

@@ -1,0 +1,43 @@
+//! How many dimensions a neighborhood has.
+
+use crate::{Error, Neighborhood, Scalar};
+use serde::{Deserialize, Serialize};
+
+/// A local dimension with its evidence.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DimensionEstimate {
+    /// The estimate as a whole number, what the pipeline acts on.
+    pub dimension: usize,
+    /// The estimate before rounding; equal to `dimension` for estimators that count.
+    pub value: f64,
+    /// How far the decision was from falling otherwise, 0 (a toss-up) to 1.
+    pub confidence: f64,
+    /// What it was read from; for principal component analysis the variances,
+    /// largest first, in squared units of the data. May be empty.
+    pub spectrum: Vec<f64>,
+}
+
+/// Estimates the dimension of the set that a neighborhood was sampled from.
+///
+/// # Laws
+/// - *motion*: the same answer after a rigid motion, within rounding;
+/// - *scale*: the same answer after uniform scaling of data and radius;
+/// - *embedding*: the same answer after an isometric embedding in a larger space;
+/// - *order*: the same answer for any order of the neighbors, within rounding.
+pub trait DimensionEstimator: Sync {
+    /// Type of the coordinates.
+    type Scalar: Scalar;
+
+    /// The dimension at the center of `neighborhood`.
+    ///
+    /// # Errors
+    /// [`Error::SparseNeighborhood`] when there are too few points,
+    /// [`Error::Shape`] when coordinates are needed and there are none.
+    fn estimate(
+        &self,
+        neighborhood: &Neighborhood<'_, Self::Scalar>,
+    ) -> Result<DimensionEstimate, Error>;
+
+    /// Short name for reports.
+    fn name(&self) -> &str;
+}

@@ -1,0 +1,46 @@
+//! Vocabulary and traits of Crosscap.
+//!
+//! A plug-in author needs this crate alone. It holds what the ideas of the method *are*
+//! (point cloud, metric space, neighborhood, stratum, chart, landmark, complex), and no
+//! algorithm, no file format, no thread.
+//!
+//! | idea | type or trait |
+//! | --- | --- |
+//! | points of R^N | [`PointCloud`] |
+//! | distances | [`MetricSpace`] |
+//! | who is near whom | [`NeighborhoodOracle`] |
+//! | how many dimensions | [`DimensionEstimator`] |
+//! | how a surface can be singular | [`SingularityModel`], [`Decomposition`] |
+//! | well-separated subset | [`LandmarkSelector`] |
+//! | local coordinates | [`LocalChart`] |
+//! | may two triangles stand side by side | [`CompatibilityTest`], [`TriangleRule`] |
+//! | the narrow waist | [`StratifiedLandmarks`] |
+//! | the result | [`Complex`], [`Mesh`] |
+
+mod chart;
+mod cloud;
+mod compatibility;
+mod complex;
+mod dimension;
+mod error;
+mod landmarks;
+mod metric;
+mod neighborhood;
+mod scalar;
+mod singularity;
+mod strata;
+mod waist;
+
+pub use chart::{Chart, LocalChart};
+pub use cloud::{PointCloud, squared_distance};
+pub use compatibility::{ChartTriangle, CompatibilityTest, Meeting, TriangleRule};
+pub use complex::{Complex, CurveEdge, Mesh};
+pub use dimension::{DimensionEstimate, DimensionEstimator};
+pub use error::Error;
+pub use landmarks::LandmarkSelector;
+pub use metric::MetricSpace;
+pub use neighborhood::{Neighbor, Neighborhood, NeighborhoodOracle};
+pub use scalar::Scalar;
+pub use singularity::{LocalPoints, Rejection, SingularityModel};
+pub use strata::{Decomposition, Stratum};
+pub use waist::{CellNeighborhood, SparseDistances, StratifiedLandmarks};

@@ -1,0 +1,49 @@
+//! Distances between the points of a finite set.
+
+use crate::Scalar;
+
+/// A finite metric space: points are the integers `0..len()`.
+///
+/// # Laws
+/// For all points `a`, `b`, `c`:
+/// - *identity*: `distance(a, a) == 0` and distances are at least 0;
+/// - *symmetry*: `distance(a, b) == distance(b, a)`, to the bit;
+/// - *triangle inequality*: `distance(a, c) <= distance(a, b) + distance(b, c)` within rounding;
+/// - *never NaN*; infinity says that no path joins the two points.
+///
+/// Distances are in the unit of the data. An implementation over coordinates need
+/// not be a norm: a graph distance, a distance on a torus or a measured matrix serve as well.
+pub trait MetricSpace: Sync {
+    /// Type that distances are given in.
+    type Scalar: Scalar;
+
+    /// Number of points.
+    fn len(&self) -> usize;
+
+    /// Whether there is no point.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Distance of two points.
+    ///
+    /// # Panics
+    /// May panic when an index is not below [`MetricSpace::len`].
+    fn distance(&self, a: usize, b: usize) -> Self::Scalar;
+
+    /// Short name for reports.
+    fn name(&self) -> &str;
+}
+
+impl<M: MetricSpace + ?Sized> MetricSpace for &M {
+    type Scalar = M::Scalar;
+    fn len(&self) -> usize {
+        (**self).len()
+    }
+    fn distance(&self, a: usize, b: usize) -> Self::Scalar {
+        (**self).distance(a, b)
+    }
+    fn name(&self) -> &str {
+        (**self).name()
+    }
+}

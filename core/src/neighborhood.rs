@@ -1,0 +1,68 @@
+//! Who is near whom.
+
+use crate::{MetricSpace, PointCloud, Scalar};
+
+/// A point and its distance from the center of a neighborhood.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbor<S> {
+    /// The point.
+    pub index: usize,
+    /// Its distance from the center, in the unit of the data.
+    pub distance: S,
+}
+
+/// Answers neighborhood queries in a finite metric space, exactly.
+///
+/// # Laws
+/// - *equals brute force*: the answer is that of a scan over all points with the metric
+///   that the oracle claims to serve;
+/// - *strictness*: `within` takes points at distance `< radius` (the paper's
+///   neighborhood, section 2), the center among them when `radius > 0`;
+/// - *order*: both answers come sorted by distance, ties by index;
+/// - *ties*: `nearest` breaks ties at the last place by the smaller index.
+pub trait NeighborhoodOracle: Sync {
+    /// Type that distances are given in.
+    type Scalar: Scalar;
+
+    /// Number of points.
+    fn len(&self) -> usize;
+
+    /// Whether there is no point.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Writes the points at distance strictly less than `radius` from `center` into
+    /// `out`, whose former content is dropped.
+    fn within(&self, center: usize, radius: Self::Scalar, out: &mut Vec<Neighbor<Self::Scalar>>);
+
+    /// Writes the `count` points nearest to `center`, itself first, into `out`; fewer
+    /// when there are fewer.
+    fn nearest(&self, center: usize, count: usize, out: &mut Vec<Neighbor<Self::Scalar>>);
+
+    /// The same two queries about a place that need not be a point of the set, where the
+    /// space has coordinates; `false` when it has none.
+    fn within_of(
+        &self,
+        _place: &[Self::Scalar],
+        _radius: Self::Scalar,
+        _out: &mut Vec<Neighbor<Self::Scalar>>,
+    ) -> bool {
+        false
+    }
+}
+
+/// A neighborhood as a dimension estimator sees it.
+#[derive(Clone, Copy)]
+pub struct Neighborhood<'a, S: Scalar> {
+    /// The center.
+    pub center: usize,
+    /// The radius it was drawn with (strict), infinite for a k-nearest neighborhood.
+    pub radius: f64,
+    /// The points in it, the center among them, sorted by distance.
+    pub neighbors: &'a [Neighbor<S>],
+    /// The metric, for distances between neighbors.
+    pub metric: &'a dyn MetricSpace<Scalar = S>,
+    /// Coordinates, where the space has any.
+    pub cloud: Option<&'a PointCloud<S>>,
+}

@@ -1,0 +1,94 @@
+//! Models of how a surface can be singular.
+
+use crate::Decomposition;
+
+/// A neighborhood in its own principal coordinates, as a singularity model sees it.
+///
+/// The origin is the mean of the neighborhood, axes are principal directions in order of
+/// falling variance.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalPoints<'a> {
+    /// Number of coordinates a point has, [`SingularityModel::local_dimension`] of them.
+    pub dimension: usize,
+    /// `count * dimension` coordinates in row order, in the unit of the data.
+    pub coordinates: &'a [f64],
+    /// Which row is the center of the neighborhood.
+    pub center: usize,
+    /// Radius of the neighborhood.
+    pub radius: f64,
+}
+
+impl LocalPoints<'_> {
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.coordinates.len() / self.dimension
+    }
+
+    /// Whether there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.coordinates.is_empty()
+    }
+
+    /// Coordinates of point `k`.
+    pub fn point(&self, k: usize) -> &[f64] {
+        &self.coordinates[k * self.dimension..(k + 1) * self.dimension]
+    }
+}
+
+/// Why a model does not apply to a neighborhood.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Rejection {
+    /// Too few points for the number of parameters.
+    TooFewPoints {
+        /// Points there are.
+        found: usize,
+        /// Points needed.
+        needed: usize,
+    },
+    /// The algebra has no real solution of the form the model asks for.
+    NoRealSolution,
+    /// The fit is worse than the threshold.
+    PoorFit {
+        /// Residual of the fit, unit of the data.
+        residual: f64,
+        /// The threshold it broke.
+        limit: f64,
+    },
+    /// A simpler model explains the points as well.
+    SimplerModelFits {
+        /// Residual of this model.
+        residual: f64,
+        /// Residual of the simpler one.
+        simpler: f64,
+    },
+    /// One of the strata holds too few points to be believed.
+    EmptyStratum {
+        /// Which stratum.
+        stratum: usize,
+        /// Points found in it.
+        found: usize,
+    },
+}
+
+/// Proposes a decomposition of a neighborhood, and says how well it fits.
+///
+/// # Laws
+/// - *motion*: the same decomposition, up to the names of the cells, after a motion of the
+///   local coordinates;
+/// - *order*: the same decomposition for any order of the points;
+/// - *partition*: every point has exactly one label;
+/// - *exact data*: residual 0, within rounding, on points of an exact instance, and growing with noise.
+pub trait SingularityModel: Sync {
+    /// Number of principal coordinates that the model works in (3 for two planes in space).
+    fn local_dimension(&self) -> usize;
+
+    /// Fits the model.
+    ///
+    /// # Errors
+    /// The [`Rejection`] that says why the model does not apply.
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection>;
+
+    /// Short name for reports and the command line.
+    fn name(&self) -> &str;
+}

@@ -1,0 +1,45 @@
+//! Decomposition of a neighborhood into points, curves and cells.
+
+use serde::{Deserialize, Serialize};
+
+/// One stratum of a decomposed neighborhood.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stratum {
+    /// 0: a point (triple point, end of a double curve); 1: a curve (double curve, boundary);
+    /// 2: a cell, an open piece of surface that no curve runs through.
+    pub dimension: u8,
+}
+
+/// A neighborhood cut into strata, with every point labelled.
+///
+/// # Invariants
+/// - `labels[k]` is an index into `strata`: the cells and curves partition the neighborhood;
+/// - `continuations` pairs cells: two cells that continue each other across a curve are
+///   one sheet. A cell may have several continuations (one a curve at its rim).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Decomposition {
+    /// The strata, those of lowest dimension first.
+    pub strata: Vec<Stratum>,
+    /// For each point of the neighborhood, the stratum it is in.
+    pub labels: Vec<u8>,
+    /// Pairs of cells that are one sheet.
+    pub continuations: Vec<(u8, u8)>,
+    /// For each curve (in the order of `strata`) the number of cells that meet in it: the
+    /// number of triangles that an edge along it must have.
+    pub cells_at_curve: Vec<u8>,
+    /// Root mean squared distance of the points to the fitted model, in the unit of the data.
+    pub residual: f64,
+    /// Number of free parameters of the fit, what a comparison of models penalizes.
+    pub parameters: usize,
+    /// The center moved onto the stratum it belongs to, in local coordinates.
+    pub center: Vec<f64>,
+    /// Distance of the unmoved center to the singular stratum.
+    pub center_offset: f64,
+}
+
+impl Decomposition {
+    /// Dimension of the stratum that point `k` of the neighborhood lies in.
+    pub fn dimension_of(&self, k: usize) -> u8 {
+        self.strata[self.labels[k] as usize].dimension
+    }
+}
