@@ -2,7 +2,15 @@
 //! else's engine, the triangulator, homology, and the verdict on a mesh.
 
 pub mod certificate;
+pub mod chart;
+pub mod dimension;
+pub mod execute;
 pub mod homology;
 pub mod isomap;
+pub mod landmarks;
 pub mod pieces;
+pub mod principal;
+pub mod singularity;
+pub mod stratify;
 pub mod surfaces;
+pub mod triangulate;

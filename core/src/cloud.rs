@@ -65,6 +65,17 @@ impl<S: Scalar> PointCloud<S> {
         &self.coordinates[index * self.dimension..(index + 1) * self.dimension]
     }
 
+    /// Moves point `index`; coordinates that are not finite leave it where it is.
+    ///
+    /// # Panics
+    /// When `place` has not N coordinates or there is no such point.
+    pub fn set_point(&mut self, index: usize, place: &[S]) {
+        if place.iter().all(|c| c.is_finite()) {
+            let n = self.dimension;
+            self.coordinates[index * n..(index + 1) * n].copy_from_slice(place);
+        }
+    }
+
     /// All coordinates in row order.
     pub fn coordinates(&self) -> &[S] {
         &self.coordinates

@@ -1,0 +1,4 @@
+//! Local charts.
+
+mod mds;
+pub use mds::ClassicalScaling;

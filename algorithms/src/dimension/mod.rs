@@ -1,0 +1,4 @@
+//! Dimension estimators.
+
+mod pca;
+pub use pca::PrincipalComponents;

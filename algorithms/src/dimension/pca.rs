@@ -1,0 +1,97 @@
+//! Dimension by principal component analysis with a tolerance.
+
+use crate::principal::PrincipalFrame;
+use crosscap_core::{DimensionEstimate, DimensionEstimator, Error, Neighborhood, Scalar};
+use std::marker::PhantomData;
+
+/// The smallest d for which the variances after the d-th are less than the share `dt` of all
+/// (Martin & Watson 2011, section 2.1).
+///
+/// ```
+/// use crosscap_algorithms::dimension::PrincipalComponents;
+/// let estimator = PrincipalComponents::<f64>::new(0.05).unwrap();
+/// let (dimension, _, confidence) = estimator.dimension_of(&[1.0, 0.9, 0.01]);
+/// assert_eq!(dimension, 2);
+/// assert!(confidence > 0.5);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct PrincipalComponents<S> {
+    dt: f64,
+    scalar: PhantomData<S>,
+}
+
+impl<S: Scalar> PrincipalComponents<S> {
+    /// Estimator with tolerance `dt`, a share of the total variance (strict).
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless `0 < dt < 1`.
+    pub fn new(dt: f64) -> Result<Self, Error> {
+        if !(dt > 0.0 && dt < 1.0) {
+            return Err(Error::Parameter {
+                name: "dt",
+                value: dt.to_string(),
+                expected: "a number strictly between 0 and 1".into(),
+            });
+        }
+        Ok(Self {
+            dt,
+            scalar: PhantomData,
+        })
+    }
+
+    /// Dimension of a spectrum of variances, largest first, with its value (the dimension
+    /// as a number) and its confidence: how far the deciding shares are from `dt`, on a
+    /// logarithmic scale, 1 from a factor of ten on.
+    pub fn dimension_of(&self, variances: &[f64]) -> (usize, f64, f64) {
+        let total: f64 = variances.iter().sum();
+        if total <= 0.0 {
+            return (0, 0.0, 1.0);
+        }
+        let mut tail = total;
+        let mut before = f64::INFINITY;
+        let mut dimension = variances.len();
+        let mut after = 0.0;
+        for (d, v) in variances.iter().enumerate() {
+            before = tail / total;
+            tail -= v;
+            after = (tail / total).max(0.0);
+            if after < self.dt {
+                dimension = d + 1;
+                break;
+            }
+        }
+        let margin = (before / self.dt).log10().min((self.dt / after.max(1e-300)).log10());
+        (dimension, dimension as f64, margin.clamp(0.0, 1.0))
+    }
+}
+
+impl<S: Scalar> DimensionEstimator for PrincipalComponents<S> {
+    type Scalar = S;
+
+    fn estimate(&self, neighborhood: &Neighborhood<'_, S>) -> Result<DimensionEstimate, Error> {
+        let cloud = neighborhood.cloud.ok_or_else(|| Error::Shape {
+            found: "distances without coordinates".into(),
+            expected: "coordinates, principal component analysis needs them".into(),
+        })?;
+        if neighborhood.neighbors.len() < 3 {
+            return Err(Error::SparseNeighborhood {
+                point: neighborhood.center,
+                found: neighborhood.neighbors.len(),
+                needed: 3,
+                parameter: "eps",
+            });
+        }
+        let frame = PrincipalFrame::of(cloud, neighborhood.neighbors.iter().map(|x| x.index));
+        let (dimension, value, confidence) = self.dimension_of(&frame.variances);
+        Ok(DimensionEstimate {
+            dimension,
+            value,
+            confidence,
+            spectrum: frame.variances,
+        })
+    }
+
+    fn name(&self) -> &str {
+        "pca"
+    }
+}

@@ -1,0 +1,43 @@
+//! Running independent jobs, in one thread or many, with the same result.
+
+use std::ops::Range;
+use std::sync::OnceLock;
+
+/// Runs independent jobs. What runs them (this thread, a pool) is a backend's business; the
+/// result must not depend on it.
+pub trait Execute: Sync {
+    /// Calls `job` for ranges that together cover `0..count` once, in any order, possibly at the same time.
+    fn ranges(&self, count: usize, job: &(dyn Fn(Range<usize>) + Sync));
+}
+
+/// This thread alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Serial;
+
+impl Execute for Serial {
+    fn ranges(&self, count: usize, job: &(dyn Fn(Range<usize>) + Sync)) {
+        job(0..count);
+    }
+}
+
+/// Points a job takes at a time: enough to drown the cost of a job, few enough to share out.
+const BLOCK: usize = 256;
+
+/// `work(scratch, i)` for every `i` below `count`, in order; `scratch` is made once a block.
+pub(crate) fn map<T: Send + Sync, C>(
+    execute: &dyn Execute,
+    count: usize,
+    scratch: impl Fn() -> C + Sync,
+    work: impl Fn(&mut C, usize) -> T + Sync,
+) -> Vec<T> {
+    let blocks: Vec<OnceLock<Vec<T>>> = (0..count.div_ceil(BLOCK)).map(|_| OnceLock::new()).collect();
+    execute.ranges(blocks.len(), &|range| {
+        let mut own = scratch();
+        for b in range {
+            let items = (b * BLOCK..((b + 1) * BLOCK).min(count)).map(|i| work(&mut own, i));
+            // A block is given out once, so setting it cannot fail.
+            let _ = blocks[b].set(items.collect());
+        }
+    });
+    blocks.into_iter().flat_map(|b| b.into_inner().unwrap_or_default()).collect()
+}

@@ -1,0 +1,119 @@
+//! A sheet as a quadratic height field.
+
+use nalgebra::{SMatrix, SVector, Vector3};
+
+/// The surface `h = q(a, b)` in space, q a polynomial of degree 2, with `a`, `b`, `h`
+/// coordinates in an orthonormal frame at an origin.
+///
+/// Second order is what a plane lacks: over a ball of radius eps a plane is off by about
+/// eps^2 / 4R for a surface of curvature radius R, a patch only by terms of third order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QuadraticPatch {
+    origin: Vector3<f64>,
+    /// First tangent, second tangent, normal.
+    frame: [Vector3<f64>; 3],
+    /// Coefficients of 1, a, b, a^2, a b, b^2.
+    coefficients: [f64; 6],
+}
+
+/// Fewest points that a patch is fitted to: twice its coefficients.
+pub(crate) const PATCH_POINTS: usize = 12;
+
+impl QuadraticPatch {
+    /// The plane through `origin` with the given orthonormal frame (two tangents, normal).
+    pub fn plane(origin: Vector3<f64>, frame: [Vector3<f64>; 3]) -> Self {
+        Self {
+            origin,
+            frame,
+            coefficients: [0.0; 6],
+        }
+    }
+
+    /// Fits the coefficients to points by least squares of heights, keeping origin and
+    /// frame; `scale` is a length typical of the points (conditioning). `false` and
+    /// unchanged when there are fewer than 12 points or they leave a coefficient open.
+    pub fn fit(&mut self, points: impl Iterator<Item = Vector3<f64>>, scale: f64) -> bool {
+        let mut normal = SMatrix::<f64, 6, 6>::zeros();
+        let mut right = SVector::<f64, 6>::zeros();
+        let mut count = 0;
+        for x in points {
+            let (a, b, h) = self.local(&x);
+            let (a, b, h) = (a / scale, b / scale, h / scale);
+            let row = SVector::<f64, 6>::from([1.0, a, b, a * a, a * b, b * b]);
+            normal.ger(1.0, &row, &row, 1.0);
+            right.axpy(h, &row, 1.0);
+            count += 1;
+        }
+        if count < PATCH_POINTS {
+            return false;
+        }
+        // A ridge far below the signal keeps directions without points flat.
+        let ridge = 1e-9 * normal.trace();
+        for k in 0..6 {
+            normal[(k, k)] += ridge;
+        }
+        let Some(solution) = normal.cholesky().map(|c| c.solve(&right)) else {
+            return false;
+        };
+        let s = scale;
+        self.coefficients = [
+            solution[0] * s,
+            solution[1],
+            solution[2],
+            solution[3] / s,
+            solution[4] / s,
+            solution[5] / s,
+        ];
+        true
+    }
+
+    fn local(&self, x: &Vector3<f64>) -> (f64, f64, f64) {
+        let d = x - self.origin;
+        (
+            self.frame[0].dot(&d),
+            self.frame[1].dot(&d),
+            self.frame[2].dot(&d),
+        )
+    }
+
+    /// Height of `x` above the patch and its gradient.
+    pub fn height(&self, x: &Vector3<f64>) -> (f64, Vector3<f64>) {
+        let (a, b, h) = self.local(x);
+        let [c0, ca, cb, caa, cab, cbb] = self.coefficients;
+        let value = h - (c0 + ca * a + cb * b + caa * a * a + cab * a * b + cbb * b * b);
+        let gradient = self.frame[2]
+            - self.frame[0] * (ca + 2.0 * caa * a + cab * b)
+            - self.frame[1] * (cb + cab * a + 2.0 * cbb * b);
+        (value, gradient)
+    }
+
+    /// Signed distance of `x` from the patch, to first order: height over slope.
+    pub fn signed_distance(&self, x: &Vector3<f64>) -> f64 {
+        let (value, gradient) = self.height(x);
+        value / gradient.norm()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn recovers_a_paraboloid() {
+        let frame = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let mut patch = QuadraticPatch::plane(Vector3::new(0.1, 0.2, 0.0), frame);
+        let at = |x: f64, y: f64| Vector3::new(x, y, 0.3 + x * y - 0.5 * x * x + 0.25 * y * y);
+        let points = (0..49).map(|k| at(f64::from(k % 7) - 3.0, f64::from(k / 7) - 3.0));
+        assert!(patch.fit(points, 3.0));
+        assert!(patch.signed_distance(&at(0.4, -0.7)).abs() < 1e-7);
+        assert!(patch.signed_distance(&(at(0.0, 0.0) + Vector3::z())) > 0.5);
+    }
+
+    #[test]
+    fn too_few_points_leave_the_plane() {
+        let frame = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let mut patch = QuadraticPatch::plane(Vector3::zeros(), frame);
+        assert!(!patch.fit((0..11).map(|_| Vector3::z()), 1.0));
+        assert_eq!(patch.signed_distance(&Vector3::z()), 1.0);
+    }
+}

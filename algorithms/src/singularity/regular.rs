@@ -1,0 +1,48 @@
+//! No singularity: one sheet.
+
+use super::patch::{PATCH_POINTS, QuadraticPatch};
+use crosscap_core::{Decomposition, LocalPoints, Rejection, SingularityModel, Stratum};
+use nalgebra::Vector3;
+
+/// One cell, a quadratic patch over the leading principal plane: what every other model
+/// has to beat.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OneSheet;
+
+impl SingularityModel for OneSheet {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        if local.len() < PATCH_POINTS {
+            return Err(Rejection::TooFewPoints {
+                found: local.len(),
+                needed: PATCH_POINTS,
+            });
+        }
+        let place = |k: usize| Vector3::from_column_slice(local.point(k));
+        let mut patch = QuadraticPatch::plane(
+            Vector3::zeros(),
+            [Vector3::x(), Vector3::y(), Vector3::z()],
+        );
+        patch.fit((0..local.len()).map(place), local.radius);
+        let sum: f64 = (0..local.len())
+            .map(|k| patch.signed_distance(&place(k)).powi(2))
+            .sum();
+        Ok(Decomposition {
+            strata: vec![Stratum { dimension: 2 }],
+            labels: vec![0; local.len()],
+            continuations: Vec::new(),
+            cells_at_curve: Vec::new(),
+            residual: (sum / local.len() as f64).sqrt(),
+            parameters: 8,
+            center: local.point(local.center).to_vec(),
+            center_offset: f64::INFINITY,
+        })
+    }
+
+    fn name(&self) -> &str {
+        "one-sheet"
+    }
+}

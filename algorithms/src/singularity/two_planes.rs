@@ -1,0 +1,391 @@
+//! Two sheets that cross in a curve: the quadric that factors into two planes.
+
+use super::patch::{PATCH_POINTS, QuadraticPatch};
+use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector4};
+
+/// Two planes `n_k . x + c_k = 0` of space with unit normals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanePair {
+    /// Unit normals.
+    pub normals: [Vector3<f64>; 2],
+    /// Offsets.
+    pub offsets: [f64; 2],
+}
+
+impl PlanePair {
+    /// Direct estimate (Martin & Watson 2011, section 2.2): the quadric of least algebraic
+    /// residual, brought to rank 2, factored. `scale` is a length typical of the points
+    /// (conditioning only).
+    ///
+    /// # Errors
+    /// [`Rejection::NoRealSolution`] when the two leading eigenvalues of its quadratic part have
+    /// the same sign: two complex planes.
+    pub fn direct(
+        points: impl Iterator<Item = Vector3<f64>>,
+        scale: f64,
+    ) -> Result<Self, Rejection> {
+        let mut normal = SMatrix::<f64, 10, 10>::zeros();
+        for x in points {
+            let x = x / scale;
+            let row = SVector::<f64, 10>::from([
+                x.x * x.x,
+                2.0 * x.x * x.y,
+                2.0 * x.x * x.z,
+                2.0 * x.x,
+                x.y * x.y,
+                2.0 * x.y * x.z,
+                2.0 * x.y,
+                x.z * x.z,
+                2.0 * x.z,
+                1.0,
+            ]);
+            normal.ger(1.0, &row, &row, 1.0);
+        }
+        let eigen = normal.symmetric_eigen();
+        let least = eigen.eigenvalues.imin();
+        let a = eigen.eigenvectors.column(least);
+        let quadratic = Matrix3::new(a[0], a[1], a[2], a[1], a[4], a[5], a[2], a[5], a[7]);
+        let size = quadratic.norm();
+        if size < 1e-12 {
+            return Err(Rejection::NoRealSolution);
+        }
+        let quadratic = quadratic / size;
+        let linear = Vector3::new(a[3], a[6], a[8]) / size;
+        let parts = quadratic.symmetric_eigen();
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| parts.eigenvalues[j].abs().total_cmp(&parts.eigenvalues[i].abs()));
+        let (mut l1, mut l2) = (parts.eigenvalues[order[0]], parts.eigenvalues[order[1]]);
+        let mut p1: Vector3<f64> = parts.eigenvectors.column(order[0]).into();
+        let mut p2: Vector3<f64> = parts.eigenvectors.column(order[1]).into();
+        if l1 * l2 >= 0.0 {
+            return Err(Rejection::NoRealSolution);
+        }
+        if l1 < 0.0 {
+            std::mem::swap(&mut l1, &mut l2);
+            std::mem::swap(&mut p1, &mut p2);
+        }
+        // Least squares of [l1 p1, l2 p2](r, s) = linear; p1, p2 are orthonormal.
+        let (r, s) = (p1.dot(&linear) / l1, p2.dot(&linear) / l2);
+        let (u, v) = (l1.sqrt(), (-l2).sqrt());
+        let plane = |sign: f64| {
+            let normal = p1 * u + p2 * (sign * v);
+            let length = normal.norm();
+            (normal / length, (r * u + sign * s * v) / length * scale)
+        };
+        let ((n1, c1), (n2, c2)) = (plane(1.0), plane(-1.0));
+        Ok(Self {
+            normals: [n1, n2],
+            offsets: [c1, c2],
+        })
+    }
+
+    /// Refinement by the paper's equation (5): minimizes the sum of squares of the product of the two
+    /// plane functions over pairs of planes (unit normals, real by construction), by
+    /// Gauss-Newton with damping from this pair on. Returns the pair reached and its sum of squares.
+    pub fn refined(
+        self,
+        points: impl Iterator<Item = Vector3<f64>> + Clone,
+        rounds: usize,
+    ) -> (Self, f64) {
+        let cost = |pair: &Self| -> f64 {
+            points
+                .clone()
+                .map(|x| (pair.distance(0, &x) * pair.distance(1, &x)).powi(2))
+                .sum()
+        };
+        let mut best = self;
+        let mut value = cost(&best);
+        let mut damping = 1e-3;
+        for _ in 0..rounds {
+            let mut normal = SMatrix::<f64, 8, 8>::zeros();
+            let mut right = SVector::<f64, 8>::zeros();
+            for x in points.clone() {
+                let (f, g) = (best.distance(0, &x), best.distance(1, &x));
+                let row = SVector::<f64, 8>::from([
+                    g * x.x,
+                    g * x.y,
+                    g * x.z,
+                    g,
+                    f * x.x,
+                    f * x.y,
+                    f * x.z,
+                    f,
+                ]);
+                normal.ger(1.0, &row, &row, 1.0);
+                right.axpy(-f * g, &row, 1.0);
+            }
+            let lift = damping * normal.trace() / 8.0 + f64::MIN_POSITIVE;
+            for k in 0..8 {
+                normal[(k, k)] += lift;
+            }
+            let Some(step) = normal.cholesky().map(|c| c.solve(&right)) else {
+                break;
+            };
+            let moved = |k: usize| {
+                let q = Vector4::new(
+                    best.normals[k].x,
+                    best.normals[k].y,
+                    best.normals[k].z,
+                    best.offsets[k],
+                ) + step.fixed_rows::<4>(4 * k);
+                let length = q.xyz().norm();
+                (q.xyz() / length, q.w / length)
+            };
+            let ((n1, c1), (n2, c2)) = (moved(0), moved(1));
+            let next = Self {
+                normals: [n1, n2],
+                offsets: [c1, c2],
+            };
+            let reached = cost(&next);
+            if reached < value {
+                let done = reached > value * (1.0 - 1e-10);
+                (best, value) = (next, reached);
+                damping = (damping * 0.2).max(1e-12);
+                if done {
+                    break;
+                }
+            } else {
+                damping *= 8.0;
+                if damping > 1e6 {
+                    break;
+                }
+            }
+        }
+        (best, value)
+    }
+
+    /// Signed distance of `x` from plane `k`.
+    pub fn distance(&self, k: usize, x: &Vector3<f64>) -> f64 {
+        self.normals[k].dot(x) + self.offsets[k]
+    }
+
+    /// Sine of the angle between the planes.
+    pub fn sine(&self) -> f64 {
+        self.normals[0].cross(&self.normals[1]).norm()
+    }
+
+    /// Unit direction of the line in which the planes meet and the point of it nearest to `x`;
+    /// `None` for planes closer to parallel than about half a degree.
+    pub fn line(&self, x: &Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let [n1, n2] = self.normals;
+        let cosine = n1.dot(&n2);
+        let square = 1.0 - cosine * cosine;
+        if square < 1e-4 {
+            return None;
+        }
+        let (f, g) = (self.distance(0, x), self.distance(1, x));
+        let alpha = (f - cosine * g) / square;
+        let beta = (g - cosine * f) / square;
+        Some((n1.cross(&n2).normalize(), x - n1 * alpha - n2 * beta))
+    }
+}
+
+/// Two sheets that cross along a double curve.
+///
+/// The planes are the paper's quadric; from their labels one quadratic patch a sheet is
+/// fitted (three rounds of hard reassignment), because a plane pair is off by the sag of
+/// the sheets, about eps^2 / 4R, and its line by as much over the sine of the angle. The
+/// center, when it is singular, is moved onto the curve in which the patches meet, by Newton's method.
+#[derive(Clone, Copy, Debug)]
+pub struct TwoPlanes {
+    dp: f64,
+    ep: f64,
+    /// Rounds of the refinement by equation (5); 0 is the direct estimate alone.
+    pub refinement_rounds: usize,
+    /// Whether sheets are curved (quadratic patches) or the planes themselves, as in the paper.
+    pub curved: bool,
+}
+
+/// Share of the points that each of the four cells must hold.
+const LEAST_CELL_SHARE: f64 = 0.03;
+/// Farthest that a center is moved, as a share of the radius.
+const LARGEST_STEP: f64 = 0.6;
+/// Every cell has a point this close to the crossing, as a share of the radius.
+const SUPPORT_REACH: f64 = 0.6;
+/// A point off the curve tells where the curve is up to this many ep.
+const WITNESS_REACH: f64 = 3.0;
+/// Patches that meet at a smaller angle (sine) do not locate a curve.
+const LEAST_SINE: f64 = 0.15;
+
+impl TwoPlanes {
+    /// Model with fit tolerance `dp` (root mean squared distance of the points to the nearer sheet,
+    /// unit of the data) and curve tolerance `ep` (a point closer than this to both sheets is
+    /// on the curve, unit of the data).
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless both are positive and finite.
+    pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
+        for (name, value) in [("dp", dp), ("ep", ep)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(Error::Parameter {
+                    name,
+                    value: value.to_string(),
+                    expected: "a positive length".into(),
+                });
+            }
+        }
+        Ok(Self {
+            dp,
+            ep,
+            refinement_rounds: 0,
+            curved: true,
+        })
+    }
+}
+
+impl TwoPlanes {
+    /// Whether the data show a crossing at `place`: points of all four cells close by, and
+    /// some point in the band. Patches also cross where they are mere extrapolation.
+    fn supported(&self, place: &Vector3<f64>, points: &[Vector3<f64>], labels: &[u8], radius: f64) -> bool {
+        let mut nearest = [f64::INFINITY; 5];
+        for (x, &label) in points.iter().zip(labels) {
+            let n = &mut nearest[label as usize];
+            *n = n.min((x - place).norm());
+        }
+        nearest[1..].iter().all(|&d| d < SUPPORT_REACH * radius)
+            && nearest[0] < SUPPORT_REACH * radius
+    }
+}
+
+impl SingularityModel for TwoPlanes {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        let count = local.len();
+        if count < 2 * PATCH_POINTS {
+            return Err(Rejection::TooFewPoints {
+                found: count,
+                needed: 2 * PATCH_POINTS,
+            });
+        }
+        let points: Vec<Vector3<f64>> = (0..count)
+            .map(|k| Vector3::from_column_slice(local.point(k)))
+            .collect();
+        let mut planes = PlanePair::direct(points.iter().copied(), local.radius)?;
+        if self.refinement_rounds > 0 {
+            planes = planes.refined(points.iter().copied(), self.refinement_rounds).0;
+        }
+        let center = points[local.center];
+        let (tangent, origin) = planes.line(&center).ok_or(Rejection::NoRealSolution)?;
+        let patch = |k: usize| {
+            let normal = planes.normals[k];
+            let start = QuadraticPatch::plane(origin, [tangent, normal.cross(&tangent), normal]);
+            // The plane itself, through the line.
+            start
+        };
+        let mut sheets = [patch(0), patch(1)];
+        let mut sheet = vec![0u8; count];
+        let assign = |sheets: &[QuadraticPatch; 2], sheet: &mut [u8]| {
+            for (s, x) in sheet.iter_mut().zip(&points) {
+                let d0 = sheets[0].signed_distance(x).abs();
+                let d1 = sheets[1].signed_distance(x).abs();
+                *s = u8::from(d1 < d0);
+            }
+        };
+        assign(&sheets, &mut sheet);
+        if self.curved {
+            for _ in 0..3 {
+                for (k, patch) in sheets.iter_mut().enumerate() {
+                    let own = points
+                        .iter()
+                        .zip(&sheet)
+                        .filter(|&(_, &s)| s as usize == k)
+                        .map(|(x, _)| *x);
+                    patch.fit(own, local.radius);
+                }
+                assign(&sheets, &mut sheet);
+            }
+        }
+        let mut labels = vec![0u8; count];
+        let mut sum = 0.0;
+        let mut held = [0usize; 5];
+        for ((label, x), &s) in labels.iter_mut().zip(&points).zip(&sheet) {
+            let own = sheets[s as usize].signed_distance(x);
+            let other = sheets[1 - s as usize].signed_distance(x);
+            sum += own * own;
+            // Cells in cyclic order around the curve: 1, 2, 3, 4.
+            let cell = match (s, other >= 0.0) {
+                (0, true) => 1,
+                (1, true) => 2,
+                (0, false) => 3,
+                _ => 4,
+            };
+            *label = if own.abs() < self.ep && other.abs() < self.ep {
+                0
+            } else {
+                cell
+            };
+            held[*label as usize] += 1;
+        }
+        let residual = (sum / count as f64).sqrt();
+        if residual > self.dp {
+            return Err(Rejection::PoorFit {
+                residual,
+                limit: self.dp,
+            });
+        }
+        let least = (LEAST_CELL_SHARE * (count - held[0]) as f64).max(3.0);
+        if let Some(stratum) = (1..5).find(|&c| (held[c] as f64) < least) {
+            return Err(Rejection::EmptyStratum {
+                stratum,
+                found: held[stratum],
+            });
+        }
+        let reached = meet(&sheets, center, LARGEST_STEP * local.radius)
+            .filter(|x| self.supported(x, &points, &labels, local.radius));
+        let (moved, center_offset) = match reached {
+            Some(x) if labels[local.center] == 0 || (x - center).norm() < WITNESS_REACH * self.ep => {
+                (x, (x - center).norm())
+            }
+            Some(_) => (origin, f64::INFINITY),
+            None if labels[local.center] == 0 => return Err(Rejection::NoRealSolution),
+            None => (origin, f64::INFINITY),
+        };
+        Ok(Decomposition {
+            strata: std::iter::once(Stratum { dimension: 1 })
+                .chain(std::iter::repeat_n(Stratum { dimension: 2 }, 4))
+                .collect(),
+            labels,
+            continuations: vec![(1, 3), (2, 4)],
+            cells_at_curve: vec![4],
+            residual,
+            parameters: 16,
+            center: moved.iter().copied().collect(),
+            center_offset,
+        })
+    }
+
+    fn name(&self) -> &str {
+        "two-planes"
+    }
+}
+
+/// The point nearest to `start`, to first order, in which two patches meet: Newton with
+/// steps of least norm. `None` when it wanders farther than `reach` or the patches are
+/// nearly parallel there.
+fn meet(sheets: &[QuadraticPatch; 2], start: Vector3<f64>, reach: f64) -> Option<Vector3<f64>> {
+    let mut x = start;
+    for _ in 0..12 {
+        let (f, a) = sheets[0].height(&x);
+        let (g, b) = sheets[1].height(&x);
+        let (aa, ab, bb) = (a.dot(&a), a.dot(&b), b.dot(&b));
+        let determinant = aa * bb - ab * ab;
+        if determinant < LEAST_SINE * LEAST_SINE * aa * bb {
+            return None;
+        }
+        let alpha = (f * bb - g * ab) / determinant;
+        let beta = (g * aa - f * ab) / determinant;
+        let step = a * alpha + b * beta;
+        x -= step;
+        if (x - start).norm() > reach {
+            return None;
+        }
+        if step.norm() < 1e-12 * reach {
+            break;
+        }
+    }
+    Some(x)
+}

@@ -1,0 +1,372 @@
+//! Which stratum every point of the cloud is in.
+
+use crate::execute::{self, Execute};
+use crate::principal::PrincipalFrame;
+use crate::singularity::OneSheet;
+use crosscap_core::{
+    Decomposition, DimensionEstimator, Error, LocalPoints, Neighbor, Neighborhood,
+    NeighborhoodOracle, MetricSpace, PointCloud, Scalar, SingularityModel, squared_distance,
+};
+
+/// What a point of the cloud is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Inside a cell.
+    Regular,
+    /// On a curve that a singularity model found.
+    Curve,
+    /// On a given boundary.
+    Boundary,
+    /// On a given boundary and on a found curve: where a double curve ends.
+    Corner,
+}
+
+/// Parameters of the analysis.
+#[derive(Clone, Debug)]
+pub struct AnalysisOptions {
+    /// Radius of the neighborhoods (strict), unit of the data.
+    pub eps: f64,
+    /// Take every point as 2-dimensional and look for no curve.
+    pub surface: bool,
+    /// Rows that lie on the boundary.
+    pub boundary: Vec<usize>,
+}
+
+/// The engines and models that the analysis is made with.
+pub struct Analyzer<'a, S: Scalar> {
+    /// The points.
+    pub cloud: &'a PointCloud<S>,
+    /// The metric of the neighborhoods.
+    pub metric: &'a dyn MetricSpace<Scalar = S>,
+    /// Neighborhoods in that metric.
+    pub oracle: &'a dyn NeighborhoodOracle<Scalar = S>,
+    /// Local dimension.
+    pub estimator: &'a dyn DimensionEstimator<Scalar = S>,
+    /// Models that compete for neighborhoods that are not 2-dimensional.
+    pub models: &'a [Box<dyn SingularityModel>],
+    /// What runs the points.
+    pub execute: &'a dyn Execute,
+}
+
+/// What the analysis found out about every point.
+#[derive(Clone, Debug)]
+pub struct Analysis {
+    /// Role of every point.
+    pub roles: Vec<Role>,
+    /// Local dimension of every point; 2 throughout where `surface` was set.
+    pub dimensions: Vec<u8>,
+    /// Places of the points, those on curves moved onto the curve.
+    pub places: PointCloud<f64>,
+    /// How far each point was moved.
+    pub offsets: Vec<f64>,
+    /// For points on curves, the radius at which the model was fitted.
+    pub radii: Vec<f64>,
+    /// For points on curves, which model.
+    pub model: Vec<u8>,
+    /// Mean number of points in a neighborhood; 0 where `surface` was set.
+    pub mean_neighbors: f64,
+    /// Points of dimension 3 or more.
+    pub candidates: usize,
+    /// Points whose neighborhood no model explained at any radius.
+    pub unexplained: Vec<usize>,
+    /// Points near a curve but not on it, with their place on it.
+    pub(super) witnesses: Vec<Witness>,
+}
+
+/// A point of a cell whose neighborhood shows a curve close by.
+#[derive(Clone, Debug)]
+pub(super) struct Witness {
+    pub(super) row: usize,
+    pub(super) place: Vec<f64>,
+    pub(super) offset: f64,
+    pub(super) radius: f64,
+    pub(super) model: u8,
+}
+
+impl Analysis {
+    /// Turns witnesses into points on the curve where it has no points within `spacing`: a band
+    /// narrower than the spacing of the data leaves gaps in the curve. Returns how many.
+    pub(super) fn fill_curves(
+        &mut self,
+        spacing: f64,
+        mut near: impl FnMut(usize, f64, &mut Vec<usize>),
+    ) -> usize {
+        let mut witnesses = std::mem::take(&mut self.witnesses);
+        witnesses.sort_by(|a, b| a.offset.total_cmp(&b.offset).then(a.row.cmp(&b.row)));
+        let slack = witnesses.last().map_or(0.0, |w| w.offset).max(
+            self.offsets.iter().copied().fold(0.0, f64::max),
+        );
+        let mut rows = Vec::new();
+        let mut filled = 0;
+        for w in witnesses {
+            near(w.row, spacing + w.offset + slack, &mut rows);
+            let covered = rows.iter().any(|&r| {
+                matches!(self.roles[r], Role::Curve | Role::Corner)
+                    && squared_distance(self.places.point(r), &w.place) < spacing * spacing
+            });
+            if covered || self.roles[w.row] != Role::Regular {
+                continue;
+            }
+            self.places.set_point(w.row, &w.place);
+            self.roles[w.row] = Role::Curve;
+            self.offsets[w.row] = w.offset;
+            self.radii[w.row] = w.radius;
+            self.model[w.row] = w.model;
+            filled += 1;
+        }
+        filled
+    }
+}
+
+/// Fewest points of a neighborhood.
+const LEAST_NEIGHBORS: usize = 8;
+/// Factor by which a neighborhood shrinks when no model fits, and how often.
+const SHRINK: f64 = 0.75;
+const SHRINKS: usize = 4;
+/// A model with a curve must leave at most this share of the residual of one sheet.
+const GAIN: f64 = 0.5;
+/// Share of unexplained points from which the radius is declared unfit.
+const UNEXPLAINED_SHARE: f64 = 0.05;
+
+/// A point farther than this share of the radius from a curve says nothing about it.
+const WITNESS_REACH: f64 = 0.4;
+
+/// What one point turned out to be.
+struct Found {
+    dimension: u8,
+    neighbors: usize,
+    kind: Kind,
+}
+enum Kind {
+    Regular,
+    Unexplained,
+    Near(Witness),
+    Singular(Witness),
+}
+
+/// Buffers of one thread.
+#[derive(Default)]
+pub(super) struct Scratch<S> {
+    pub(super) near: Vec<Neighbor<S>>,
+    pub(super) local: Vec<f64>,
+}
+
+impl<S: Scalar> Analyzer<'_, S> {
+    /// Analyzes every point.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a radius that is not positive, [`Error::Index`] for a boundary row
+    /// out of range, [`Error::SparseNeighborhood`] where a neighborhood holds fewer than 8 points,
+    /// [`Error::Dimension`] where more than 5 % of the points are explained by no model.
+    ///
+    /// O(n k N^2) for k points in a neighborhood.
+    pub fn analyze(&self, options: &AnalysisOptions) -> Result<Analysis, Error> {
+        let n = self.cloud.len();
+        if !(options.eps > 0.0 && options.eps.is_finite()) {
+            return Err(Error::Parameter {
+                name: "eps",
+                value: options.eps.to_string(),
+                expected: "a positive length".into(),
+            });
+        }
+        let mut boundary = vec![false; n];
+        for &row in &options.boundary {
+            *boundary.get_mut(row).ok_or(Error::Index {
+                what: "boundary row",
+                index: row,
+                limit: n,
+            })? = true;
+        }
+        let mut places = self.cloud.cast::<f64>().coordinates().to_vec();
+        let width = self.cloud.dimension();
+        let mut out = Analysis {
+            roles: boundary
+                .iter()
+                .map(|&b| if b { Role::Boundary } else { Role::Regular })
+                .collect(),
+            dimensions: vec![2; n],
+            places: PointCloud::new(width, Vec::new())?,
+            offsets: vec![0.0; n],
+            radii: vec![0.0; n],
+            model: vec![0; n],
+            mean_neighbors: 0.0,
+            candidates: 0,
+            unexplained: Vec::new(),
+            witnesses: Vec::new(),
+        };
+        if !options.surface {
+            let found = execute::map(self.execute, n, Scratch::default, |scratch, i| {
+                self.point(i, options.eps, scratch)
+            });
+            let mut total = 0usize;
+            for (i, found) in found.into_iter().enumerate() {
+                let found = found?;
+                total += found.neighbors;
+                out.dimensions[i] = found.dimension;
+                out.candidates += usize::from(found.dimension != 2);
+                match found.kind {
+                    Kind::Regular => {}
+                    Kind::Unexplained => out.unexplained.push(i),
+                    Kind::Near(witness) => out.witnesses.push(witness),
+                    Kind::Singular(w) => {
+                        places[i * width..(i + 1) * width].copy_from_slice(&w.place);
+                        out.offsets[i] = w.offset;
+                        out.radii[i] = w.radius;
+                        out.model[i] = w.model;
+                        out.roles[i] = if boundary[i] { Role::Corner } else { Role::Curve };
+                    }
+                }
+            }
+            out.mean_neighbors = total as f64 / n.max(1) as f64;
+            if out.unexplained.len() as f64 > UNEXPLAINED_SHARE * n as f64 {
+                let point = out.unexplained[0];
+                return Err(Error::Dimension {
+                    point,
+                    dimension: out.dimensions[point] as usize,
+                    count: out.unexplained.len(),
+                    parameter: "eps",
+                });
+            }
+        }
+        out.places = PointCloud::new(width, places)?;
+        Ok(out)
+    }
+
+    fn point(&self, i: usize, eps: f64, scratch: &mut Scratch<S>) -> Result<Found, Error> {
+        self.oracle.within(i, S::of(eps), &mut scratch.near);
+        let neighbors = scratch.near.len();
+        if neighbors < LEAST_NEIGHBORS {
+            return Err(Error::SparseNeighborhood {
+                point: i,
+                found: neighbors,
+                needed: LEAST_NEIGHBORS,
+                parameter: "eps",
+            });
+        }
+        let estimate = self.estimator.estimate(&Neighborhood {
+            center: i,
+            radius: eps,
+            neighbors: &scratch.near,
+            metric: self.metric,
+            cloud: Some(self.cloud),
+        })?;
+        let dimension = estimate.dimension.min(255) as u8;
+        let kind = match dimension {
+            2 => Kind::Regular,
+            0 | 1 => Kind::Unexplained,
+            _ => self.explain(i, eps, scratch),
+        };
+        Ok(Found {
+            dimension,
+            neighbors,
+            kind,
+        })
+    }
+
+    /// Lets the models compete, at smaller and smaller radii: a radius at which the sheets
+    /// bend too much for any model is too large there, whatever it is elsewhere.
+    fn explain(&self, i: usize, eps: f64, scratch: &mut Scratch<S>) -> Kind {
+        let mut radius = eps;
+        for _ in 0..=SHRINKS {
+            let Some((frame, center)) = self.localize(i, radius, scratch) else {
+                break;
+            };
+            let local = LocalPoints {
+                dimension: 3,
+                coordinates: &scratch.local,
+                center,
+                radius,
+            };
+            let plain = match OneSheet.decompose(&local) {
+                Ok(fit) => fit.residual,
+                Err(_) => break,
+            };
+            let best = self
+                .models
+                .iter()
+                .enumerate()
+                .filter_map(|(m, model)| Some((m, model.decompose(&local).ok()?)))
+                .filter(|(_, fit)| fit.residual < GAIN * plain)
+                .min_by(|a, b| score(&a.1).total_cmp(&score(&b.1)));
+            if let Some((m, fit)) = best {
+                let on_curve = fit.dimension_of(center) < 2;
+                if !on_curve && fit.center_offset > WITNESS_REACH * radius {
+                    return Kind::Regular;
+                }
+                let shift: Vec<f64> = fit
+                    .center
+                    .iter()
+                    .zip(local.point(center))
+                    .map(|(a, b)| a - b)
+                    .collect();
+                let place = frame
+                    .lift_vector(&shift)
+                    .iter()
+                    .zip(self.cloud.point(i))
+                    .map(|(d, x)| x.as_f64() + d)
+                    .collect();
+                let witness = Witness {
+                    row: i,
+                    place,
+                    offset: fit.center_offset,
+                    radius,
+                    model: m as u8,
+                };
+                return if on_curve {
+                    Kind::Singular(witness)
+                } else {
+                    Kind::Near(witness)
+                };
+            }
+            if plain < FLAT * radius {
+                return Kind::Regular;
+            }
+            radius *= SHRINK;
+            if scratch.near.len() < 2 * LEAST_NEIGHBORS {
+                break;
+            }
+        }
+        Kind::Unexplained
+    }
+
+    /// Local coordinates of the ball around `i`, into `scratch.local`; the frame and the
+    /// position of the center among the neighbors.
+    fn localize(&self, i: usize, radius: f64, scratch: &mut Scratch<S>) -> Option<(PrincipalFrame, usize)> {
+        self.oracle.within(i, S::of(radius), &mut scratch.near);
+        let frame = PrincipalFrame::of(self.cloud, scratch.near.iter().map(|x| x.index));
+        scratch.local.clear();
+        for x in &scratch.near {
+            frame.project(self.cloud.point(x.index), 3, &mut scratch.local);
+        }
+        let center = scratch.near.iter().position(|x| x.index == i)?;
+        Some((frame, center))
+    }
+
+    /// The decomposition of the ball of a point on a curve, with the rows it labels.
+    pub(super) fn decomposition(
+        &self,
+        analysis: &Analysis,
+        i: usize,
+        scratch: &mut Scratch<S>,
+    ) -> Option<(Decomposition, Vec<usize>)> {
+        let radius = analysis.radii[i];
+        let (_, center) = self.localize(i, radius, scratch)?;
+        let local = LocalPoints {
+            dimension: 3,
+            coordinates: &scratch.local,
+            center,
+            radius,
+        };
+        let fit = self.models[analysis.model[i] as usize].decompose(&local).ok()?;
+        Some((fit, scratch.near.iter().map(|x| x.index).collect()))
+    }
+}
+
+/// One sheet is believed when its residual is below this share of the radius.
+const FLAT: f64 = 0.06;
+
+/// What models are compared by: the logarithm of the residual, penalized for parameters.
+fn score(fit: &Decomposition) -> f64 {
+    let count = fit.labels.len().max(2) as f64;
+    2.0 * count * fit.residual.max(1e-12).ln() + fit.parameters as f64 * count.ln()
+}

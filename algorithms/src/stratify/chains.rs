@@ -1,0 +1,379 @@
+//! Chains: landmarks along the curves, and the edges that join them.
+
+use super::analysis::{Analysis, Analyzer, Role};
+use super::cells::{Reference, references};
+use crosscap_core::{CurveEdge, Scalar, squared_distance};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Landmarks on points and curves, with the chains.
+#[derive(Default)]
+pub(super) struct Curves {
+    /// Rows of the landmarks, points (corners) first.
+    pub(super) rows: Vec<usize>,
+    /// How many of them are points.
+    pub(super) corners: usize,
+    /// Chain edges between positions in `rows`.
+    pub(super) edges: Vec<CurveEdge>,
+    /// References of the corners, in the order of `rows`, where there is one.
+    pub(super) corner_references: Vec<Reference>,
+}
+
+/// Spacing of the curve points that chains are laid over, as a share of dl.
+pub(super) const NODE_SPACING: f64 = 0.125;
+/// Curve points closer than this share of dl are one curve.
+const REACH: f64 = 1.0;
+/// A chain is joined to a corner, or two free ends to each other, over at most this many dl.
+const JOIN: f64 = 2.0;
+/// Separations along a curve that are tried, as multiples of dl: the closing gap of a
+/// closed curve depends on it, and long edges are the bad ones.
+const STRETCHES: usize = 16;
+const STRETCH_STEP: f64 = 0.025;
+
+/// One kind of curve.
+struct Kind {
+    role: Role,
+    cells: u8,
+}
+
+impl Curves {
+    pub(super) fn new<S: Scalar>(
+        analyzer: &Analyzer<'_, S>,
+        analysis: &Analysis,
+        dl: f64,
+    ) -> Self {
+        let mut out = Self::default();
+        let corners = thin(analyzer, analysis, dl, |r| r == Role::Corner);
+        out.corner_references = references(analyzer, analysis, &corners);
+        out.rows = corners;
+        out.corners = out.rows.len();
+        for kind in [
+            Kind { role: Role::Boundary, cells: 1 },
+            Kind { role: Role::Curve, cells: 4 },
+        ] {
+            out.lay(analyzer, analysis, dl, &kind);
+        }
+        out.join_free_ends(analysis, dl);
+        out.edges.sort_unstable();
+        out.edges.dedup_by_key(|e| e.ends);
+        out
+    }
+
+    fn lay<S: Scalar>(&mut self, analyzer: &Analyzer<'_, S>, analysis: &Analysis, dl: f64, kind: &Kind) {
+        let places = &analysis.places;
+        let distance = |a: usize, b: usize| squared_distance(places.point(a), places.point(b)).sqrt();
+        let mut rows = thin(analyzer, analysis, NODE_SPACING * dl, |r| r == kind.role);
+        let label = |row: usize| -> Option<(usize, u8)> {
+            self.corner_references
+                .iter()
+                .enumerate()
+                .filter_map(|(k, r)| Some((distance(r.row, row), k, r.label(row)?)))
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .filter(|&(d, k, _)| d < analysis.radii[self.corner_references[k].row])
+                .map(|(_, k, l)| (k, l))
+        };
+        // Next to a corner the points of a boundary are in the band of both sheets: which
+        // branch they are on cannot be told, and the corner stands for them.
+        rows.retain(|&row| {
+            self.rows[..self.corners].iter().all(|&c| distance(c, row) > NODE_SPACING * dl)
+                && (kind.role == Role::Curve
+                    || label(row).is_none_or(|(k, l)| self.corner_references[k].is_cell(l) || distance(self.corner_references[k].row, row) > dl))
+        });
+        let labels: Vec<Option<(usize, u8)>> = rows
+            .iter()
+            .map(|&row| if kind.role == Role::Boundary { label(row) } else { None })
+            .collect();
+        let mut graph: Vec<Vec<(usize, f64)>> = vec![Vec::new(); rows.len()];
+        let mut near = Vec::new();
+        let mut at = vec![usize::MAX; analysis.roles.len()];
+        for (k, &row) in rows.iter().enumerate() {
+            at[row] = k;
+        }
+        let slack = 2.0 * rows.iter().map(|&r| analysis.offsets[r]).fold(0.0, f64::max);
+        for (k, &row) in rows.iter().enumerate() {
+            analyzer.oracle.within(row, S::of(REACH * dl + slack), &mut near);
+            for x in &near {
+                let other = at[x.index];
+                if other == usize::MAX || other == k {
+                    continue;
+                }
+                let d = distance(row, x.index);
+                let parted = matches!((labels[k], labels[other]), (Some(a), Some(b)) if a.0 == b.0 && a.1 != b.1);
+                if d <= REACH * dl && !parted {
+                    graph[k].push((other, d));
+                }
+            }
+        }
+        // Corners are nodes behind the others, each joined to the nearest node of every branch.
+        let first_corner = rows.len();
+        for c in 0..self.corners {
+            graph.push(Vec::new());
+            let row = self.rows[c];
+            let mut branches: Vec<(u8, usize, f64)> = Vec::new();
+            for (k, &other) in rows.iter().enumerate() {
+                let d = distance(row, other);
+                if d > JOIN * dl {
+                    continue;
+                }
+                let branch = match (kind.role, labels[k]) {
+                    (Role::Boundary, Some((_, l))) => l,
+                    (Role::Boundary, None) => continue,
+                    _ => 0,
+                };
+                match branches.iter_mut().find(|b| b.0 == branch) {
+                    Some(b) if d < b.2 => *b = (branch, k, d),
+                    Some(_) => {}
+                    None => branches.push((branch, k, d)),
+                }
+            }
+            for (_, k, d) in branches {
+                graph[first_corner + c].push((k, d));
+                graph[k].push((first_corner + c, d));
+            }
+        }
+        let mut seen = vec![false; graph.len()];
+        for start in 0..rows.len() {
+            if seen[start] {
+                continue;
+            }
+            let component = component(&graph, start, first_corner, &mut seen);
+            self.lay_component(analysis, dl, kind, &rows, &graph, &component, first_corner);
+        }
+    }
+
+    /// Landmarks and chain edges of one connected curve.
+    #[allow(clippy::too_many_arguments)]
+    fn lay_component(
+        &mut self,
+        analysis: &Analysis,
+        dl: f64,
+        kind: &Kind,
+        rows: &[usize],
+        graph: &[Vec<(usize, f64)>],
+        component: &[usize],
+        first_corner: usize,
+    ) {
+        let places = &analysis.places;
+        let distance = |a: usize, b: usize| squared_distance(places.point(a), places.point(b)).sqrt();
+        let anchors: Vec<usize> = (first_corner..graph.len())
+            .filter(|&c| graph[c].iter().any(|(k, _)| component.binary_search(k).is_ok()))
+            .collect();
+        let inside = |k: usize| component.binary_search(&k).is_ok();
+        // A sweep from an end of the curve, or from anywhere on a closed one.
+        let start = anchors.first().copied().unwrap_or_else(|| {
+            let (order, _) = sweep(graph, &[component[0]], inside);
+            order.last().map_or(component[0], |&(k, _)| k)
+        });
+        let (order, _) = sweep(graph, &[start], inside);
+        let before = self.rows.len();
+        let mut best: Option<(f64, Vec<usize>, Vec<(usize, usize)>)> = None;
+        for stretch in 0..STRETCHES {
+            let separation = dl * (1.0 + STRETCH_STEP * stretch as f64);
+            let mut chosen: Vec<usize> = Vec::new();
+            for &(k, _) in order.iter().filter(|&&(k, _)| k < first_corner) {
+                let row = rows[k];
+                let free = chosen.iter().rev().all(|&c| distance(rows[c], row) >= separation)
+                    && self.rows[..before].iter().all(|&r| distance(r, row) >= dl);
+                if free {
+                    chosen.push(k);
+                }
+            }
+            let sources: Vec<usize> = anchors.iter().chain(&chosen).copied().collect();
+            let edges = adjacent(graph, &sources, |k| inside(k) || anchors.contains(&k));
+            let row_of = |k: usize| if k < first_corner { rows[k] } else { self.rows[k - first_corner] };
+            let edges = without_triangles(edges, |a, b| distance(row_of(a), row_of(b)));
+            let longest = edges
+                .iter()
+                .map(|&(a, b)| distance(row_of(a), row_of(b)))
+                .fold(0.0, f64::max);
+            if best.as_ref().is_none_or(|b| longest < b.0 - 1e-12) {
+                best = Some((longest, chosen, edges));
+            }
+        }
+        let Some((_, chosen, edges)) = best else {
+            return;
+        };
+        self.rows.extend(chosen.iter().map(|&k| rows[k]));
+        let position = |k: usize| {
+            if k >= first_corner {
+                k - first_corner
+            } else {
+                // Sources are corners or chosen, so it is there.
+                before + chosen.iter().position(|&c| c == k).unwrap_or(0)
+            }
+        };
+        for (a, b) in edges {
+            self.edges.push(CurveEdge::new(position(a) as u32, position(b) as u32, kind.cells));
+        }
+    }
+
+    /// Joins ends of chains that stop at nothing, nearest pairs first: where the points of
+    /// a curve have a gap.
+    fn join_free_ends(&mut self, analysis: &Analysis, dl: f64) {
+        let mut degree = vec![0u32; self.rows.len()];
+        let mut cells = vec![0u8; self.rows.len()];
+        for e in &self.edges {
+            for end in e.ends {
+                degree[end as usize] += 1;
+                cells[end as usize] = e.cells;
+            }
+        }
+        let free: Vec<usize> = (self.corners..self.rows.len()).filter(|&k| degree[k] == 1).collect();
+        let mut pairs = Vec::new();
+        for (x, &a) in free.iter().enumerate() {
+            for &b in &free[..x] {
+                let joined = self.edges.iter().any(|e| e.ends == [b as u32, a as u32]);
+                let d = analysis.places.squared_distance(self.rows[a], self.rows[b]).sqrt();
+                if cells[a] == cells[b] && d <= JOIN * dl && !joined {
+                    pairs.push((d, b, a));
+                }
+            }
+        }
+        pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        for (_, a, b) in pairs {
+            if degree[a] == 1 && degree[b] == 1 {
+                degree[a] += 1;
+                degree[b] += 1;
+                self.edges.push(CurveEdge::new(a as u32, b as u32, cells[a]));
+            }
+        }
+    }
+}
+
+/// Rows of the given role, those moved least first, with pairwise distance at least `spacing`.
+fn thin<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    analysis: &Analysis,
+    spacing: f64,
+    role: impl Fn(Role) -> bool,
+) -> Vec<usize> {
+    let mut rows: Vec<usize> = (0..analysis.roles.len()).filter(|&i| role(analysis.roles[i])).collect();
+    rows.sort_by(|&a, &b| analysis.offsets[a].total_cmp(&analysis.offsets[b]).then(a.cmp(&b)));
+    let slack = rows.iter().map(|&r| analysis.offsets[r]).fold(0.0, f64::max);
+    let mut blocked = vec![false; analysis.roles.len()];
+    let mut near = Vec::new();
+    let mut kept = Vec::new();
+    for row in rows {
+        if blocked[row] {
+            continue;
+        }
+        kept.push(row);
+        analyzer.oracle.within(row, S::of(spacing + slack + analysis.offsets[row]), &mut near);
+        for x in &near {
+            if role(analysis.roles[x.index])
+                && analysis.places.squared_distance(row, x.index) < spacing * spacing
+            {
+                blocked[x.index] = true;
+            }
+        }
+    }
+    kept
+}
+
+/// More rows on curves whose decompositions label their surroundings: `spacing` apart from each
+/// other and from `known`.
+pub(super) fn more_references<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    analysis: &Analysis,
+    spacing: f64,
+    known: &[usize],
+) -> Vec<Reference> {
+    let rows: Vec<usize> = thin(analyzer, analysis, spacing, |r| r == Role::Curve)
+        .into_iter()
+        .filter(|r| !known.contains(r))
+        .collect();
+    references(analyzer, analysis, &rows)
+}
+
+fn component(
+    graph: &[Vec<(usize, f64)>],
+    start: usize,
+    first_corner: usize,
+    seen: &mut [bool],
+) -> Vec<usize> {
+    let mut out = vec![start];
+    seen[start] = true;
+    let mut at = 0;
+    while at < out.len() {
+        for &(k, _) in &graph[out[at]] {
+            if k < first_corner && !seen[k] {
+                seen[k] = true;
+                out.push(k);
+            }
+        }
+        at += 1;
+    }
+    out.sort_unstable();
+    out
+}
+
+/// Nodes in order of their path length from `sources`, and the source each belongs to.
+fn sweep(
+    graph: &[Vec<(usize, f64)>],
+    sources: &[usize],
+    inside: impl Fn(usize) -> bool,
+) -> (Vec<(usize, f64)>, Vec<usize>) {
+    let mut owner = vec![usize::MAX; graph.len()];
+    let mut heap = BinaryHeap::new();
+    // Path lengths as integers order like the numbers themselves: both are non-negative.
+    for &s in sources {
+        heap.push(Reverse((0f64.to_bits(), s, s)));
+    }
+    let mut order = Vec::new();
+    while let Some(Reverse((bits, node, source))) = heap.pop() {
+        if owner[node] != usize::MAX {
+            continue;
+        }
+        owner[node] = source;
+        let length = f64::from_bits(bits);
+        order.push((node, length));
+        for &(next, d) in &graph[node] {
+            if owner[next] == usize::MAX && inside(next) {
+                heap.push(Reverse(((length + d).to_bits(), next, source)));
+            }
+        }
+    }
+    (order, owner)
+}
+
+/// Pairs of sources whose geodesic Voronoi cells touch.
+fn adjacent(
+    graph: &[Vec<(usize, f64)>],
+    sources: &[usize],
+    inside: impl Fn(usize) -> bool,
+) -> Vec<(usize, usize)> {
+    let (_, owner) = sweep(graph, sources, inside);
+    let mut edges = Vec::new();
+    for (a, row) in graph.iter().enumerate() {
+        for &(b, _) in row {
+            let (p, q) = (owner[a], owner[b]);
+            if p < q && q != usize::MAX {
+                edges.push((p, q));
+            }
+        }
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+/// Drops the longest edge of every triangle: a chain is a path, a triangle a shortcut.
+fn without_triangles(
+    mut edges: Vec<(usize, usize)>,
+    length: impl Fn(usize, usize) -> f64,
+) -> Vec<(usize, usize)> {
+    edges.sort_by(|&(a, b), &(c, d)| length(a, b).total_cmp(&length(c, d)).then((a, b).cmp(&(c, d))));
+    let mut kept: Vec<(usize, usize)> = Vec::new();
+    for (a, b) in edges {
+        let around = |v: usize| -> Vec<usize> {
+            kept.iter()
+                .filter_map(|&(p, q)| if p == v { Some(q) } else if q == v { Some(p) } else { None })
+                .collect()
+        };
+        let other = around(b);
+        if !around(a).iter().any(|x| other.contains(x)) {
+            kept.push((a, b));
+        }
+    }
+    kept
+}

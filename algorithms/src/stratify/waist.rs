@@ -1,0 +1,305 @@
+//! Landmarks, cells and distances put together.
+
+use super::analysis::{Analysis, Analyzer, Role};
+use super::cells::{CellGraph, Flood, Reference, references};
+use super::chains::{Curves, NODE_SPACING, more_references};
+use crosscap_core::{
+    CellNeighborhood, Error, LandmarkSelector, MetricSpace, Scalar, SparseDistances,
+    StratifiedLandmarks, squared_distance,
+};
+use serde::{Deserialize, Serialize};
+
+/// Parameters of the stratification.
+#[derive(Clone, Debug)]
+pub struct StratifyOptions {
+    /// Landmark separation dl, unit of the data.
+    pub dl: f64,
+    /// Radius of the charts (strict), unit of the data; 3 dl where the user says nothing.
+    pub tri_eps: f64,
+    /// Seed of the landmark selection.
+    pub seed: u64,
+}
+
+/// What the stratification counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StratifyCounts {
+    /// Landmarks.
+    pub landmarks: usize,
+    /// Landmarks on curves and points.
+    pub curve_landmarks: usize,
+    /// Landmarks that are points where curves end.
+    pub corners: usize,
+    /// Chain edges.
+    pub curve_edges: usize,
+    /// Edges of the neighbor graph that the labels cut.
+    pub cut_edges: usize,
+    /// Mean number of members of a neighborhood.
+    pub mean_members: f64,
+}
+
+/// The waist, and what ties it to the points.
+#[derive(Clone, Debug)]
+pub struct Stratification<S> {
+    /// What the triangulator takes.
+    pub waist: StratifiedLandmarks<S>,
+    /// Row of the input that each landmark stands for.
+    pub rows: Vec<usize>,
+    /// Counts for the report.
+    pub counts: StratifyCounts,
+}
+
+/// Points of a cell that must be flooded for a curve landmark to be at the rim of the flood.
+const CONTACTS: usize = 6;
+/// Spacing of the decompositions that label points, as a share of the radius of their fit.
+const REFERENCE_SPACING: f64 = 0.2;
+/// A cell whose points begin farther than this many dl from a curve landmark does not touch it.
+const CONTACT_REACH: f64 = 2.0;
+
+/// Cuts the cloud along its curves and points into cells and describes every landmark's surroundings.
+///
+/// `metric` gives the distances inside the neighborhoods, any metric on the rows of the input;
+/// `None` for Euclidean distances of the places, moved ones included.
+///
+/// # Errors
+/// [`Error::Parameter`] for lengths that are not positive; those of the selector.
+pub fn stratify<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    analysis: &mut Analysis,
+    metric: Option<&dyn MetricSpace<Scalar = S>>,
+    selector: &dyn LandmarkSelector<Scalar = S>,
+    options: &StratifyOptions,
+) -> Result<Stratification<S>, Error> {
+    for (name, value) in [("dl", options.dl), ("tri-eps", options.tri_eps)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(Error::Parameter {
+                name,
+                value: value.to_string(),
+                expected: "a positive length".into(),
+            });
+        }
+    }
+    let n = analysis.roles.len();
+    let mut near = Vec::new();
+    analysis.fill_curves(2.0 * NODE_SPACING * options.dl, |row, radius, out| {
+        analyzer.oracle.within(row, S::of(radius), &mut near);
+        out.clear();
+        out.extend(near.iter().map(|x| x.index));
+    });
+    let analysis = &*analysis;
+    let places = &analysis.places;
+    let curves = Curves::new(analyzer, analysis, options.dl);
+    let mut refs = references(analyzer, analysis, &curves.rows.iter().copied().filter(|&r| analysis.radii[r] > 0.0).collect::<Vec<_>>());
+    let least = curves
+        .rows
+        .iter()
+        .map(|&r| analysis.radii[r])
+        .filter(|&r| r > 0.0)
+        .fold(f64::INFINITY, f64::min);
+    if least.is_finite() {
+        let known: Vec<usize> = refs.iter().map(|r| r.row).collect();
+        refs.extend(more_references(analyzer, analysis, REFERENCE_SPACING * least, &known));
+    }
+    let graph = CellGraph::new(analyzer, analysis, &refs);
+
+    let mut rows = curves.rows.clone();
+    let candidates = free_of_edges(analyzer, analysis, &curves);
+    rows.extend(selector.select(analyzer.oracle, &candidates, &curves.rows, options.dl, options.seed)?);
+    let mut strata = vec![2u8; rows.len()];
+    strata[..curves.rows.len()].fill(1);
+    strata[..curves.corners].fill(0);
+    let mut landmark_at = vec![u32::MAX; n];
+    for (k, &row) in rows.iter().enumerate() {
+        landmark_at[row] = k as u32;
+    }
+
+    let contacts = Contacts::new(analyzer, analysis, &curves, &refs, options.dl);
+    let mut flood = Flood::new(n);
+    let mut hits = vec![0u32; contacts.groups.len()];
+    let mut neighborhoods = Vec::with_capacity(rows.len());
+    let starts = (curves.rows.len()..rows.len())
+        .map(|k| (k, None))
+        .chain(contacts.groups.iter().enumerate().map(|(g, group)| (group.landmark, Some(g))));
+    for (center, group) in starts {
+        let origin = places.point(rows[center]);
+        let reach = options.tri_eps * options.tri_eps;
+        let inside = |row: usize| squared_distance(origin, places.point(row)) < reach;
+        match group {
+            None => flood.run(&graph, std::iter::once(rows[center] as u32), inside),
+            Some(g) => flood.run(&graph, contacts.groups[g].rows.iter().copied(), inside),
+        }
+        let mut touched = Vec::new();
+        let mut members: Vec<u32> = Vec::new();
+        for &row in &flood.reached {
+            let k = landmark_at[row as usize];
+            if k != u32::MAX && k as usize != center {
+                members.push(k);
+            }
+            for &g in contacts.of(row as usize) {
+                if hits[g as usize] == 0 {
+                    touched.push(g);
+                }
+                hits[g as usize] += 1;
+            }
+        }
+        touched.sort_unstable();
+        for g in touched {
+            let group = &contacts.groups[g as usize];
+            let enough = 2 * hits[g as usize] as usize >= group.rows.len();
+            hits[g as usize] = 0;
+            if enough && group.landmark != center && inside(rows[group.landmark]) {
+                members.push(group.landmark as u32);
+            }
+        }
+        members.sort_unstable();
+        members.dedup();
+        let far = |k: u32| squared_distance(origin, places.point(rows[k as usize]));
+        members.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
+        members.insert(0, center as u32);
+        neighborhoods.push(CellNeighborhood {
+            center: center as u32,
+            members,
+        });
+    }
+    let mut pairs: Vec<(u32, u32)> = Vec::new();
+    for near in &neighborhoods {
+        for (i, &a) in near.members.iter().enumerate() {
+            pairs.extend(near.members[..i].iter().map(|&b| (a.min(b), a.max(b))));
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    let distances = SparseDistances::new(
+        rows.len(),
+        pairs
+            .iter()
+            .map(|&(a, b)| {
+                let (p, q) = (rows[a as usize], rows[b as usize]);
+                let d = match metric {
+                    Some(metric) => metric.distance(p, q),
+                    None => S::of(places.squared_distance(p, q).sqrt()),
+                };
+                (a, b, d)
+            }),
+    )?;
+    let counts = StratifyCounts {
+        landmarks: rows.len(),
+        curve_landmarks: curves.rows.len(),
+        corners: curves.corners,
+        curve_edges: curves.edges.len(),
+        cut_edges: graph.cut,
+        mean_members: neighborhoods.iter().map(|x| x.members.len()).sum::<usize>() as f64
+            / neighborhoods.len().max(1) as f64,
+    };
+    Ok(Stratification {
+        waist: StratifiedLandmarks {
+            strata,
+            curve_edges: curves.edges,
+            neighborhoods,
+            distances,
+        },
+        rows,
+        counts,
+    })
+}
+
+/// Regular rows outside the diametral ball of every chain edge: a landmark inside it would
+/// make the edge no edge of a Delaunay triangulation, and on a convex boundary may even lie
+/// beyond it.
+fn free_of_edges<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    analysis: &Analysis,
+    curves: &Curves,
+) -> Vec<usize> {
+    let places = &analysis.places;
+    let mut barred = vec![false; analysis.roles.len()];
+    let mut near = Vec::new();
+    for e in &curves.edges {
+        let [a, b] = e.ends.map(|k| curves.rows[k as usize]);
+        let length = places.squared_distance(a, b);
+        let slack = analysis.offsets[a];
+        analyzer.oracle.within(a, S::of(length.sqrt() + slack), &mut near);
+        for x in &near {
+            if places.squared_distance(a, x.index) + places.squared_distance(b, x.index) < length {
+                barred[x.index] = true;
+            }
+        }
+    }
+    (0..analysis.roles.len())
+        .filter(|&i| analysis.roles[i] == Role::Regular && !barred[i])
+        .collect()
+}
+
+/// One cell at one curve landmark.
+struct ContactGroup {
+    landmark: usize,
+    /// The points of the cell nearest to the landmark.
+    rows: Vec<u32>,
+}
+
+/// Which points of which cells touch which curve landmarks.
+struct Contacts {
+    groups: Vec<ContactGroup>,
+    starts: Vec<u32>,
+    entries: Vec<u32>,
+}
+
+impl Contacts {
+    fn new<S: Scalar>(
+        analyzer: &Analyzer<'_, S>,
+        analysis: &Analysis,
+        curves: &Curves,
+        refs: &[Reference],
+        dl: f64,
+    ) -> Self {
+        let places = &analysis.places;
+        let mut groups = Vec::new();
+        let mut near = Vec::new();
+        for (landmark, &row) in curves.rows.iter().enumerate() {
+            let reference = refs.iter().find(|r| r.row == row);
+            let reach = CONTACT_REACH * dl;
+            analyzer.oracle.within(row, S::of(reach + analysis.offsets[row]), &mut near);
+            let mut cells: Vec<(u8, f64, u32)> = near
+                .iter()
+                .filter(|x| analysis.roles[x.index] == Role::Regular)
+                .filter_map(|x| {
+                    let label = match reference {
+                        None => 0,
+                        Some(r) => r.label(x.index).filter(|&l| r.is_cell(l))?,
+                    };
+                    Some((label, places.squared_distance(row, x.index), x.index as u32))
+                })
+                .collect();
+            cells.sort_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal).then(a.2.cmp(&b.2)));
+            for cell in cells.chunk_by(|a, b| a.0 == b.0) {
+                groups.push(ContactGroup {
+                    landmark,
+                    rows: cell.iter().take(CONTACTS).map(|x| x.2).collect(),
+                });
+            }
+        }
+        let n = analysis.roles.len();
+        let mut pairs: Vec<(u32, u32)> = groups
+            .iter()
+            .enumerate()
+            .flat_map(|(g, group)| group.rows.iter().map(move |&r| (r, g as u32)))
+            .collect();
+        pairs.sort_unstable();
+        let mut starts = vec![0u32; n + 1];
+        for &(r, _) in &pairs {
+            starts[r as usize + 1] += 1;
+        }
+        for i in 0..n {
+            starts[i + 1] += starts[i];
+        }
+        Self {
+            groups,
+            starts,
+            entries: pairs.into_iter().map(|(_, g)| g).collect(),
+        }
+    }
+
+    /// The groups that a row belongs to.
+    fn of(&self, row: usize) -> &[u32] {
+        &self.entries[self.starts[row] as usize..self.starts[row + 1] as usize]
+    }
+}

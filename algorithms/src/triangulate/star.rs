@@ -1,0 +1,254 @@
+//! One star: the triangles around a landmark inside the chart of one of its cells.
+
+use super::front::Front;
+use super::rule::circumradius;
+use crosscap_core::{CellNeighborhood, ChartTriangle, Error, Scalar};
+use robust::{Coord, orient2d};
+
+/// A neighborhood laid out in the plane with the triangles that are already in it.
+pub(super) struct Patch<'a> {
+    members: &'a [u32],
+    places: Vec<[f64; 2]>,
+    triangles: Vec<ChartTriangle>,
+    boxes: Vec<[f64; 4]>,
+    /// Curve edges between members, as positions.
+    walls: Vec<(usize, usize)>,
+}
+
+/// Sign of the area of a triangle of the chart, exact.
+pub(super) fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i8 {
+    let coord = |p: [f64; 2]| Coord { x: p[0], y: p[1] };
+    let d = orient2d(coord(a), coord(b), coord(c));
+    i8::from(d > 0.0) - i8::from(d < 0.0)
+}
+
+fn bounds(places: &[[f64; 2]; 3]) -> [f64; 4] {
+    let mut b = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+    for p in places {
+        b[0] = b[0].min(p[0]);
+        b[1] = b[1].min(p[1]);
+        b[2] = b[2].max(p[0]);
+        b[3] = b[3].max(p[1]);
+    }
+    b
+}
+
+impl<'a> Patch<'a> {
+    /// Lays out the members that are still in play.
+    pub(super) fn new<S: Scalar>(
+        front: &mut Front<'_, S>,
+        near: &'a CellNeighborhood,
+        kept: &'a mut Vec<u32>,
+    ) -> Result<Self, Error> {
+        kept.clear();
+        kept.extend(near.members.iter().copied().filter(|&m| !front.dropped[m as usize]));
+        let members: &'a [u32] = kept;
+        let k = members.len();
+        let mut distances = vec![0.0; k * k];
+        for i in 0..k {
+            for j in 0..i {
+                let d = front.distance(members[i], members[j]);
+                distances[i * k + j] = d;
+                distances[j * k + i] = d;
+            }
+        }
+        let chart = front.parts.chart.chart(k, &distances, 2)?;
+        if chart.coordinates.len() != 2 * k || chart.coordinates.iter().any(|c| !c.is_finite()) {
+            return Err(Error::Law {
+                plugin: front.parts.chart.name().into(),
+                law: "finite distances give finite coordinates",
+                point: near.center as usize,
+                detail: format!("{} coordinates for {k} points", chart.coordinates.len()),
+            });
+        }
+        let places: Vec<[f64; 2]> = chart.coordinates.chunks_exact(2).map(|c| [c[0], c[1]]).collect();
+        front.locate(members);
+        let mut patch = Self {
+            members,
+            places,
+            triangles: Vec::new(),
+            boxes: Vec::new(),
+            walls: Vec::new(),
+        };
+        for (i, &m) in members.iter().enumerate() {
+            for &t in &front.incident[m as usize] {
+                let corners = front.triangles[t as usize];
+                // Each triangle once: from the corner that comes first in the chart.
+                let at = corners.map(|c| front.position(c));
+                if at.iter().all(|a| a.is_some_and(|a| a >= i)) {
+                    patch.push(at.map(|a| a.unwrap_or(0)));
+                }
+            }
+            for &(other, _) in &front.curve[m as usize] {
+                if let Some(j) = front.position(other).filter(|&j| j > i) {
+                    patch.walls.push((i, j));
+                }
+            }
+        }
+        Ok(patch)
+    }
+
+    fn push(&mut self, at: [usize; 3]) {
+        let triangle = self.triangle(at);
+        self.boxes.push(bounds(&triangle.places));
+        self.triangles.push(triangle);
+    }
+
+    fn triangle(&self, at: [usize; 3]) -> ChartTriangle {
+        ChartTriangle {
+            corners: at.map(|a| self.members[a]),
+            places: at.map(|a| self.places[a]),
+        }
+    }
+
+    /// Other corners of the triangles of the chart on the edge of members `a`, `b`.
+    fn across(&self, a: u32, b: u32) -> impl Iterator<Item = u32> + '_ {
+        self.triangles.iter().filter_map(move |t| {
+            let on = t.corners.contains(&a) && t.corners.contains(&b);
+            on.then(|| t.corners.iter().copied().find(|&c| c != a && c != b)).flatten()
+        })
+    }
+
+    /// Closes the star of the center (member 0). `false` when no admissible triangle is left
+    /// for a dangling edge.
+    pub(super) fn close<S: Scalar>(&mut self, front: &mut Front<'_, S>) -> bool {
+        loop {
+            match self.dangling(front) {
+                None => return true,
+                Some((x, beyond)) => {
+                    let Some(w) = self.apex(front, x, beyond) else {
+                        return false;
+                    };
+                    self.push([0, x, w]);
+                    front.add([self.members[0], self.members[x], self.members[w]]);
+                }
+            }
+        }
+    }
+
+    /// The shortest edge at the center that lacks a triangle, as the position of its other end and
+    /// that of the corner of the triangle that it has.
+    fn dangling<S: Scalar>(&self, front: &Front<'_, S>) -> Option<(usize, Option<usize>)> {
+        let center = self.members[0];
+        let mut ends: Vec<u32> = self
+            .triangles
+            .iter()
+            .filter(|t| t.corners.contains(&center))
+            .flat_map(|t| t.corners)
+            .chain(self.walls.iter().filter(|w| w.0 == 0).map(|w| self.members[w.1]))
+            .filter(|&c| c != center)
+            .collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let on_curve = front.input.strata[center as usize] < 2;
+        if ends.is_empty() {
+            if on_curve {
+                return None;
+            }
+            // A fresh star starts from the nearest member that can be joined.
+            return (1..self.members.len())
+                .filter(|&x| self.joinable(front, 0, x))
+                .min_by(|&a, &b| {
+                    let d = |x: usize| front.distance(center, self.members[x]);
+                    d(a).total_cmp(&d(b)).then(a.cmp(&b))
+                })
+                .map(|x| (x, None));
+        }
+        let mut best: Option<(f64, usize, Option<usize>)> = None;
+        for end in ends {
+            let has: Vec<u32> = self.across(center, end).collect();
+            let wanted = if front.cells(center, end).is_some() { 1 } else { 2 };
+            if has.len() >= wanted {
+                continue;
+            }
+            let length = front.distance(center, end);
+            let x = front.position(end)?;
+            if best.is_none_or(|b| length < b.0) {
+                best = Some((length, x, has.first().and_then(|&c| front.position(c))));
+            }
+        }
+        best.map(|(_, x, beyond)| (x, beyond))
+    }
+
+    /// The best admissible corner of a triangle on the edge from the center to `x`, on the
+    /// side away from `beyond`.
+    fn apex<S: Scalar>(&self, front: &Front<'_, S>, x: usize, beyond: Option<usize>) -> Option<usize> {
+        let (p, q) = (self.places[0], self.places[x]);
+        let taken = beyond.map(|b| turn(p, q, self.places[b]));
+        let edge = front.distance(self.members[0], self.members[x]);
+        let mut candidates: Vec<(f64, usize)> = (1..self.members.len())
+            .filter(|&w| w != x)
+            .filter_map(|w| {
+                let side = turn(p, q, self.places[w]);
+                if side == 0 || taken == Some(side) {
+                    return None;
+                }
+                let a = front.distance(self.members[0], self.members[w]);
+                let b = front.distance(self.members[x], self.members[w]);
+                let rank = front.parts.rule.rank(edge, a, b);
+                let fits = circumradius(edge, a, b) <= front.parts.largest_circumradius;
+                (rank.is_finite() && fits).then_some((rank, w))
+            })
+            .collect();
+        candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        candidates
+            .into_iter()
+            .map(|(_, w)| w)
+            .find(|&w| self.admissible(front, x, w))
+    }
+
+    /// Whether the edge of members `a`, `b` could be part of another triangle of this chart.
+    fn joinable<S: Scalar>(&self, front: &Front<'_, S>, a: usize, b: usize) -> bool {
+        let (u, v) = (self.members[a], self.members[b]);
+        let total = front.count(u, v);
+        match front.cells(u, v) {
+            Some(cells) => {
+                total < cells as usize && self.across(u, v).next().is_none()
+            }
+            None => {
+                total < 2
+                    && !front.shortcut(u, v)
+                    && self.walls.iter().all(|&(c, d)| !self.crosses(a, b, c, d))
+            }
+        }
+    }
+
+    /// Whether two segments between members cross properly or one end of the second lies on
+    /// the first.
+    fn crosses(&self, a: usize, b: usize, c: usize, d: usize) -> bool {
+        if a == c || a == d || b == c || b == d {
+            return false;
+        }
+        let [p, q, r, s] = [a, b, c, d].map(|k| self.places[k]);
+        turn(p, q, r) * turn(p, q, s) <= 0 && turn(r, s, p) * turn(r, s, q) <= 0
+    }
+
+    fn admissible<S: Scalar>(&self, front: &Front<'_, S>, x: usize, w: usize) -> bool {
+        if !self.joinable(front, 0, w) || !self.joinable(front, x, w) {
+            return false;
+        }
+        let at = [0, x, w];
+        let mut corners = at.map(|a| self.members[a]);
+        corners.sort_unstable();
+        if front.holds(corners) {
+            return false;
+        }
+        let places = at.map(|a| self.places[a]);
+        let way = turn(places[0], places[1], places[2]);
+        let b = bounds(&places);
+        for (k, &p) in self.places.iter().enumerate() {
+            if at.contains(&k) || p[0] < b[0] || p[0] > b[2] || p[1] < b[1] || p[1] > b[3] {
+                continue;
+            }
+            let inside = (0..3).all(|i| turn(places[i], places[(i + 1) % 3], p) * way >= 0);
+            if inside {
+                return false;
+            }
+        }
+        let triangle = self.triangle(at);
+        self.triangles.iter().zip(&self.boxes).all(|(t, c)| {
+            let apart = c[0] > b[2] || c[2] < b[0] || c[1] > b[3] || c[3] < b[1];
+            apart || front.parts.test.compatible(&triangle, t)
+        })
+    }
+}
