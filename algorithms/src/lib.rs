@@ -5,4 +5,5 @@ pub mod certificate;
 pub mod homology;
 pub mod isomap;
 pub mod pieces;
+pub mod predicate;
 pub mod surfaces;

@@ -8,6 +8,7 @@
 //! measured from the original coordinates. So the answer is that of a scan over all points, to
 //! the bit, and the axes decide nothing but the speed.
 
+use std::cell::RefCell;
 use std::num::NonZero;
 use std::sync::Arc;
 
@@ -219,7 +220,7 @@ impl<S: Scalar> NeighborhoodOracle for EuclideanOracle<S> {
             }
         });
         if count < out.len() {
-            out.select_nth_unstable_by(count, order);
+            out.select_nth_unstable_by_key(count, rank);
             out.truncate(count);
         }
         sort(out);
@@ -237,14 +238,54 @@ impl<S: Scalar> NeighborhoodOracle for EuclideanOracle<S> {
     }
 }
 
-fn order<S: Scalar>(a: &Neighbor<S>, b: &Neighbor<S>) -> std::cmp::Ordering {
-    (a.distance.partial_cmp(&b.distance))
-        .unwrap_or(std::cmp::Ordering::Equal)
-        .then(a.index.cmp(&b.index))
+/// Distance, then index, as one number: the bits of nonnegative numbers are in their order.
+fn rank<S: Scalar>(neighbor: &Neighbor<S>) -> u128 {
+    u128::from(neighbor.distance.as_f64().to_bits()) << 64 | neighbor.index as u128
 }
 
+/// Sorts by distance, then index. On a surface the number of neighbors grows with the square of
+/// the distance, so buckets of equal squared width hold about one each: several times faster
+/// than comparing (a query's time goes mostly here otherwise), and never worse than it.
 fn sort<S: Scalar>(neighbors: &mut [Neighbor<S>]) {
-    neighbors.sort_unstable_by(order);
+    thread_local! {
+        static SCRATCH: RefCell<(Vec<u32>, Vec<u128>)> = const { RefCell::new((vec![], vec![])) };
+    }
+    let count = neighbors.len();
+    let square = |n: &Neighbor<S>| n.distance.as_f64() * n.distance.as_f64();
+    let most = neighbors.iter().map(square).fold(0.0, f64::max);
+    let per_square = (count as f64 - 1.0) / most;
+    if count < 48 || !(per_square > 0.0 && per_square.is_finite()) {
+        return neighbors.sort_unstable_by_key(rank);
+    }
+    let bucket = |n: &Neighbor<S>| ((square(n) * per_square) as usize).min(count - 1);
+    SCRATCH.with_borrow_mut(|(ends, ranks)| {
+        ends.clear();
+        ends.resize(count, 0);
+        ranks.clear();
+        ranks.resize(count, 0);
+        neighbors.iter().for_each(|n| ends[bucket(n)] += 1);
+        let mut before = 0;
+        for end in ends.iter_mut() {
+            before += std::mem::replace(end, before);
+        }
+        // Each start moves to the end of its bucket while the bucket fills.
+        for n in neighbors.iter() {
+            let end = &mut ends[bucket(n)];
+            ranks[*end as usize] = rank(n);
+            *end += 1;
+        }
+        let mut start = 0;
+        for &end in ends.iter() {
+            if end - start > 1 {
+                ranks[start as usize..end as usize].sort_unstable();
+            }
+            start = end;
+        }
+        for (n, rank) in neighbors.iter_mut().zip(ranks) {
+            n.distance = S::of(f64::from_bits((*rank >> 64) as u64));
+            n.index = *rank as u64 as usize;
+        }
+    });
 }
 
 /// The coordinates of the tree: centered at the mean, scaled into the unit ball, and projected
@@ -554,6 +595,16 @@ mod tests {
             let mut c = vec![1.0_f32; n * 500];
             c.extend(noise(3).take(n * 200).map(|x| x as f32));
             agree(PointCloud::new(n, c).unwrap(), &[0.5, 1.0]);
+        }
+    }
+
+    #[test]
+    fn many_neighbors() {
+        for n in [2, 3, 12] {
+            let c: Vec<f64> = noise(21).take(n * 1500).collect();
+            let cloud = PointCloud::new(n, c).unwrap();
+            agree(cloud.cast::<f32>(), &[0.5, 1.5]);
+            agree(cloud, &[0.5, 1.5]);
         }
     }
 
