@@ -4,6 +4,7 @@
 pub mod certificate;
 pub mod homology;
 pub mod isomap;
+pub mod metric;
 pub mod pieces;
 pub mod predicate;
 pub mod surfaces;
