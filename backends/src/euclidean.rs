@@ -94,6 +94,16 @@ impl<S: Scalar> EuclideanOracle<S> {
         })
     }
 
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.cloud.len()
+    }
+
+    /// Whether there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.cloud.is_empty()
+    }
+
     /// The cloud it serves.
     pub fn cloud(&self) -> &Arc<PointCloud<S>> {
         &self.cloud
