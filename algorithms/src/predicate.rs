@@ -49,9 +49,9 @@ impl CompatibilityTest for PlanarPredicate {
         // The corner of `b` that is corner `i` of `a`.
         let mut partner = [None; 3];
         let mut shared = 0;
-        for i in 0..3 {
-            partner[i] = b.corners.iter().position(|&c| c == a.corners[i]);
-            if let Some(j) = partner[i] {
+        for (i, partner) in partner.iter_mut().enumerate() {
+            *partner = b.corners.iter().position(|&c| c == a.corners[i]);
+            if let Some(j) = *partner {
                 if a.places[i] != b.places[j] {
                     return Meeting::Overlap;
                 }

@@ -117,7 +117,7 @@ impl<S: Scalar> EuclideanOracle<S> {
     /// When `center` is not a point.
     pub fn indices_within(&self, center: usize, radius: S, out: &mut Vec<u32>) {
         out.clear();
-        if !(radius > S::zero()) {
+        if radius.as_f64().is_nan() || radius <= S::zero() {
             return;
         }
         let row = self.cloud.point(center);
@@ -161,7 +161,7 @@ impl<S: Scalar> EuclideanOracle<S> {
 
     fn within_row(&self, row: &[S], radius: S, out: &mut Vec<Neighbor<S>>) {
         out.clear();
-        if !(radius > S::zero()) {
+        if radius.as_f64().is_nan() || radius <= S::zero() {
             return;
         }
         self.candidates(row, radius.as_f64(), &mut |index, _| {
@@ -675,7 +675,7 @@ mod tests {
         let oracle = EuclideanOracle::new(PointCloud::new(3, c).unwrap()).unwrap();
         let (mut found, mut indices, mut total) = (Vec::new(), Vec::new(), 0);
         let centers: Vec<usize> = (0..20_000).map(|i| (i * 7919) % 87_000).collect();
-        for radius in [0.264, 0.264] {
+        for radius in [0.25, 0.25] {
             let start = std::time::Instant::now();
             for &center in &centers {
                 oracle.within(center, radius, &mut found);

@@ -476,7 +476,7 @@ fn row<S: Scalar>(
     let mut row = Vec::with_capacity(found.len());
     for n in found.iter() {
         let length = n.distance.as_f64();
-        if n.index >= oracle.len() || !(length >= 0.0) {
+        if n.index >= oracle.len() || length < 0.0 || length.is_nan() {
             return Err(Error::Law {
                 plugin: "neighborhood oracle".into(),
                 law: "equals brute force",

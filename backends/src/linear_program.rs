@@ -9,7 +9,7 @@ const POSITIVE: f64 = 1e-6;
 /// How two triangles of a chart meet, decided by the linear program (6) of Martin & Watson
 /// (2011, section 2): the reference for the exact test
 /// [`PlanarPredicate`](crosscap_algorithms::predicate::PlanarPredicate), whose documentation
-/// defines the relation, and some hundred times slower.
+/// defines the relation, and some hundreds of times slower.
 ///
 /// For triangles with corners `u_i` and `v_j`, over `alpha, beta >= 0`:
 ///

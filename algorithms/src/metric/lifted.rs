@@ -99,8 +99,8 @@ impl<S: Scalar> Lifted<S> {
                 for j in 0..=i {
                     let product = dot(lifted.vector(point, i), lifted.vector(point, j));
                     let expected = if i == j { 1.0 } else { 0.0 };
-                    // Written so that an overflow to NaN is refused as well.
-                    if !((product - expected).abs() <= ORTHONORMAL) {
+                    let error = (product - expected).abs();
+                    if error > ORTHONORMAL || error.is_nan() {
                         return Err(Error::Parameter {
                             name: "tangent basis",
                             value: format!(
