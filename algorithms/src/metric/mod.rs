@@ -1,0 +1,20 @@
+//! Metric spaces that need no engine, and the oracle that serves any of them.
+//!
+//! | model | distance | from |
+//! | --- | --- | --- |
+//! | [`Euclidean`] | straight line in R^N | coordinates |
+//! | [`Lifted`] | position and tangent plane together | coordinates and tangent planes |
+//! | [`GivenDistances`] | as measured | a full matrix |
+//!
+//! [`BruteForceOracle`] answers neighborhood queries in any metric space by looking at every
+//! point: right by construction, so it is what every other oracle is compared with.
+
+mod brute_force;
+mod euclidean;
+mod given;
+mod lifted;
+
+pub use brute_force::BruteForceOracle;
+pub use euclidean::Euclidean;
+pub use given::GivenDistances;
+pub use lifted::Lifted;
