@@ -1,0 +1,1 @@
+//! Whole meshes, good and broken.
