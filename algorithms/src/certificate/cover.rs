@@ -104,7 +104,10 @@ fn spacing(points: &PointCloud<f64>, frame: &Frame, tree: &Tree) -> (f64, f64) {
     let random = ((points.len().max(2) as f64).ln() / std::f64::consts::LN_2).sqrt();
     let evenness = quantile(&near, 0.05) / median;
     let scattered = ((0.9 - evenness) / (0.9 - 0.27)).clamp(0.0, 1.0);
-    (median, median * (1.15 + (random - 1.15).max(0.0) * scattered))
+    (
+        median,
+        median * (1.15 + (random - 1.15).max(0.0) * scattered),
+    )
 }
 
 /// Barycentric steps of a triangle whose sides are sampled at the latter's middle at least.
@@ -126,9 +129,7 @@ pub(super) fn check(
     options: &CertificateOptions<'_>,
 ) -> CoverReport {
     let limits = &options.limits;
-    let separation = options
-        .landmark_separation
-        .unwrap_or(0.75 * median_edge);
+    let separation = options.landmark_separation.unwrap_or(0.75 * median_edge);
     let mut report = CoverReport {
         landmark_separation: separation,
         separation_given: options.landmark_separation.is_some(),
@@ -137,7 +138,11 @@ pub(super) fn check(
     };
     let allowed = (limits.unused_landmarks * mesh.complex.vertices as f64).floor();
     if report.unused_landmarks as f64 > allowed {
-        let places = options.unused_landmarks.iter().map(|&p| Place::Point(p)).collect();
+        let places = options
+            .unused_landmarks
+            .iter()
+            .map(|&p| Place::Point(p))
+            .collect();
         let violation = Violation::at(ViolationKind::UnusedLandmarks, places, |p| match p {
             Place::Point(p) => options
                 .points
@@ -146,9 +151,9 @@ pub(super) fn check(
                 .unwrap_or_default(),
             _ => Vec::new(),
         });
-        report.violations.extend(
-            violation.map(|v| v.measured(options.unused_landmarks.len() as f64, allowed)),
-        );
+        report
+            .violations
+            .extend(violation.map(|v| v.measured(options.unused_landmarks.len() as f64, allowed)));
     }
     let Some(points) = options.points.filter(|p| !p.is_empty()) else {
         return report;
@@ -221,7 +226,10 @@ pub(super) fn check(
     let mut place = vec![0.0; n];
     let mut seen: Vec<[u32; 2]> = Vec::new();
     for &[a, b] in bare {
-        let (p, q) = (mesh.vertices.point(a as usize), mesh.vertices.point(b as usize));
+        let (p, q) = (
+            mesh.vertices.point(a as usize),
+            mesh.vertices.point(b as usize),
+        );
         let pieces = steps([p, q, q], separation);
         for i in 1..pieces {
             let t = i as f64 / pieces as f64;

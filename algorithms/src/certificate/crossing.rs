@@ -162,28 +162,63 @@ mod tests {
     fn disjoint_touching_and_crossing() {
         assert!(against([[1., 1., -1.], [1., 1., 1.], [9., 9., 1.]]));
         assert!(!against([[1., 1., 0.5], [1., 2., 1.], [9., 9., 1.]]));
-        assert!(against([[1., 1., 0.], [1., 2., 1.], [2., 1., 1.]]), "corner on face");
-        assert!(!against([[3., 3., -1.], [3., 3., 1.], [9., 9., 1.]]), "beyond the side");
-        assert!(against([[1., 1., 0.], [2., 1., 0.], [1., 2., 0.]]), "inside, same plane");
-        assert!(!against([[5., 5., 0.], [6., 5., 0.], [5., 6., 0.]]), "same plane, apart");
-        assert!(against([[-1., -1., 0.], [9., -1., 0.], [-1., 9., 0.]]), "contains it");
+        assert!(
+            against([[1., 1., 0.], [1., 2., 1.], [2., 1., 1.]]),
+            "corner on face"
+        );
+        assert!(
+            !against([[3., 3., -1.], [3., 3., 1.], [9., 9., 1.]]),
+            "beyond the side"
+        );
+        assert!(
+            against([[1., 1., 0.], [2., 1., 0.], [1., 2., 0.]]),
+            "inside, same plane"
+        );
+        assert!(
+            !against([[5., 5., 0.], [6., 5., 0.], [5., 6., 0.]]),
+            "same plane, apart"
+        );
+        assert!(
+            against([[-1., -1., 0.], [9., -1., 0.], [-1., 9., 0.]]),
+            "contains it"
+        );
     }
 
     #[test]
     fn one_common_vertex() {
         let mut rows: Vec<[f64; 3]> = BASE.to_vec();
-        rows.extend([[1., 2., 1.], [2., 1., -1.], [-3., -1., 2.], [-1., -3., 2.], [1., 1., 0.], [9., 9., 3.]]);
-        assert!(meets(&rows, [0, 1, 2], [0, 3, 4]), "pierces through the common corner");
+        rows.extend([
+            [1., 2., 1.],
+            [2., 1., -1.],
+            [-3., -1., 2.],
+            [-1., -3., 2.],
+            [1., 1., 0.],
+            [9., 9., 3.],
+        ]);
+        assert!(
+            meets(&rows, [0, 1, 2], [0, 3, 4]),
+            "pierces through the common corner"
+        );
         assert!(!meets(&rows, [0, 1, 2], [0, 5, 6]));
-        assert!(meets(&rows, [0, 1, 2], [0, 7, 8]), "a side inside the other");
-        assert!(!meets(&rows, [0, 1, 2], [0, 1, 3]), "a common edge is a matter of folds");
+        assert!(
+            meets(&rows, [0, 1, 2], [0, 7, 8]),
+            "a side inside the other"
+        );
+        assert!(
+            !meets(&rows, [0, 1, 2], [0, 1, 3]),
+            "a common edge is a matter of folds"
+        );
     }
 
     #[test]
     fn scale_does_not_matter() {
         for scale in [1e-120, 1e120] {
             let other = [[1., 1., -1.], [1., 1., 1.], [9., 9., 1.]];
-            let rows: Vec<[f64; 3]> = BASE.iter().chain(&other).map(|r| r.map(|x| x * scale)).collect();
+            let rows: Vec<[f64; 3]> = BASE
+                .iter()
+                .chain(&other)
+                .map(|r| r.map(|x| x * scale))
+                .collect();
             assert!(meets(&rows, [0, 1, 2], [3, 4, 5]));
         }
     }

@@ -30,12 +30,18 @@ pub(super) fn point_triangle(p: &[f64], a: &[f64], b: &[f64], c: &[f64]) -> f64 
         ww - 2.0 * (s * wu + t * wv) + s * s * uu + 2.0 * s * t * uv + t * t * vv
     } else {
         let side = |along: f64, length: f64, from: f64| {
-            let k = if length > 0.0 { (along / length).clamp(0.0, 1.0) } else { 0.0 };
+            let k = if length > 0.0 {
+                (along / length).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
             from - 2.0 * k * along + k * k * length
         };
-        side(wu, uu, ww)
-            .min(side(wv, vv, ww))
-            .min(side(wv - wu - uv + uu, uu - 2.0 * uv + vv, ww - 2.0 * wu + uu))
+        side(wu, uu, ww).min(side(wv, vv, ww)).min(side(
+            wv - wu - uv + uu,
+            uu - 2.0 * uv + vv,
+            ww - 2.0 * wu + uu,
+        ))
     };
     squared.max(0.0)
 }

@@ -33,10 +33,7 @@ impl Frame {
                 slack: 0.0,
             };
         }
-        let rows: Vec<&[f64]> = shape
-            .iter()
-            .step_by(shape.len().div_ceil(2000))
-            .collect();
+        let rows: Vec<&[f64]> = shape.iter().step_by(shape.len().div_ceil(2000)).collect();
         let mut center = vec![0.0; n];
         for row in &rows {
             for (c, x) in center.iter_mut().zip(*row) {
@@ -65,7 +62,11 @@ impl Frame {
         }
         let mut reach = 0.0_f64;
         for row in shape.iter().chain(other.into_iter().flat_map(|o| o.iter())) {
-            let r: f64 = row.iter().zip(&center).map(|(x, c)| (x - c) * (x - c)).sum();
+            let r: f64 = row
+                .iter()
+                .zip(&center)
+                .map(|(x, c)| (x - c) * (x - c))
+                .sum();
             let size: f64 = row.iter().map(|x| x * x).sum();
             reach = reach.max(r.sqrt() + size.sqrt());
         }

@@ -49,7 +49,11 @@ pub(super) fn area([a, b, c]: [&[f64]; 3]) -> f64 {
             .sum()
     };
     let (bb, cc, bc) = (dot(b, b), dot(c, c), dot(b, c));
-    let (base, along, from, to) = if bb >= cc { (bb, bc, b, c) } else { (cc, bc, c, b) };
+    let (base, along, from, to) = if bb >= cc {
+        (bb, bc, b, c)
+    } else {
+        (cc, bc, c, b)
+    };
     if base == 0.0 {
         return 0.0;
     }
@@ -78,7 +82,11 @@ pub(super) fn check(
 
     // lengths: the median over all edges of triangles, and over one side of every triangle;
     // the stricter of the two is used
-    let length = |a: u32, b: u32| mesh.vertices.squared_distance(a as usize, b as usize).sqrt();
+    let length = |a: u32, b: u32| {
+        mesh.vertices
+            .squared_distance(a as usize, b as usize)
+            .sqrt()
+    };
     let all = super::quality::median(
         triangles
             .iter()
@@ -178,9 +186,7 @@ pub(super) fn check(
     report
         .violations
         .extend(Violation::at(ViolationKind::Stacked, stacked, at));
-    report
-        .violations
-        .extend(Violation::at(kind, crossing, at));
+    report.violations.extend(Violation::at(kind, crossing, at));
     if entangled {
         report.violations.push(Violation::whole(
             ViolationKind::Entangled,
@@ -214,10 +220,7 @@ fn folds(mesh: &Mesh, incidence: &Incidence, limits: &Limits, report: &mut Geome
                 .find(|&v| v != a && v != b)
                 .unwrap_or(a);
             let tip = mesh.vertices.point(tip as usize);
-            let k = (0..n)
-                .map(|i| (tip[i] - p[i]) * (q[i] - p[i]))
-                .sum::<f64>()
-                / along;
+            let k = (0..n).map(|i| (tip[i] - p[i]) * (q[i] - p[i])).sum::<f64>() / along;
             let from = wings.len();
             wings.extend((0..n).map(|i| tip[i] - p[i] - k * (q[i] - p[i])));
             let height = wings[from..].iter().map(|w| w * w).sum::<f64>().sqrt();

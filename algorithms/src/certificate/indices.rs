@@ -103,7 +103,12 @@ pub(super) fn check(mesh: &Mesh) -> IndexReport {
         .curve_edges
         .iter()
         .enumerate()
-        .map(|(k, e)| ([e.ends[0].min(e.ends[1]), e.ends[0].max(e.ends[1])], k as u32))
+        .map(|(k, e)| {
+            (
+                [e.ends[0].min(e.ends[1]), e.ends[0].max(e.ends[1])],
+                k as u32,
+            )
+        })
         .collect();
     ends.sort_unstable();
     let twice = ends

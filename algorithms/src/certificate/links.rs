@@ -196,7 +196,8 @@ impl Link {
     /// Kind of the component that starts at a node; a single node is a [`LinkKind::CurveEnd`].
     fn connected_kind(&self, start: u32) -> LinkKind {
         let mut degrees = [0_usize; 6];
-        let members = || (start..self.nodes.len() as u32).filter(|&v| self.component[v as usize] == start);
+        let members =
+            || (start..self.nodes.len() as u32).filter(|&v| self.component[v as usize] == start);
         for v in members() {
             degrees[self.degree(v).min(5)] += 1;
         }
@@ -315,9 +316,9 @@ pub(super) fn check(
         .map(|(k, c)| format!("{k:?} {c}"))
         .collect::<Vec<_>>()
         .join(", ");
-    report.violations.extend(
-        Violation::at(ViolationKind::InadmissibleLink, bad, at).map(|v| v.detailed(kinds)),
-    );
+    report
+        .violations
+        .extend(Violation::at(ViolationKind::InadmissibleLink, bad, at).map(|v| v.detailed(kinds)));
     report
         .violations
         .extend(Violation::at(ViolationKind::SplitLink, split, at));
@@ -337,7 +338,13 @@ mod tests {
 
     /// The kind of link that a list of link edges makes: vertex 0 is the cone point.
     fn cone(edges: &[[u32; 2]], bare: &[u32]) -> LinkKind {
-        let top = edges.iter().flatten().chain(bare).max().copied().unwrap_or(0) as usize;
+        let top = edges
+            .iter()
+            .flatten()
+            .chain(bare)
+            .max()
+            .copied()
+            .unwrap_or(0) as usize;
         let triangles = edges.iter().map(|&[a, b]| [0, a, b]).collect();
         let curves = bare.iter().map(|&b| CurveEdge::new(0, b, 0)).collect();
         let complex = Complex::new(top + 1, triangles, curves).unwrap();
@@ -385,7 +392,10 @@ mod tests {
             (subdivided(&[[1, 1], [1, 2]]), SideSheetEnd),
             (complete.clone(), QuadrupleJunction),
             (subdivided(&complete), QuadrupleJunction),
-            (subdivided(&[[1, 2], [1, 2], [3, 4], [3, 4], [1, 3], [2, 4]]), Other),
+            (
+                subdivided(&[[1, 2], [1, 2], [3, 4], [3, 4], [1, 3], [2, 4]]),
+                Other,
+            ),
             (subdivided(&[[1, 1], [2, 2]]), IsolatedCrossing),
             (subdivided(&[[1, 1], [2, 2], [3, 3]]), Split),
             (vec![[1, 2], [3, 4]], Split),

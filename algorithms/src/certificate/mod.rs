@@ -161,7 +161,10 @@ impl CertificateOptions<'_> {
                 format!("{name} is {value}, expected a finite number of at least 0"),
             ));
         }
-        if let Some(dl) = self.landmark_separation.filter(|d| !(*d > 0.0 && d.is_finite())) {
+        if let Some(dl) = self
+            .landmark_separation
+            .filter(|d| !(*d > 0.0 && d.is_finite()))
+        {
             return Some(Violation::whole(
                 ViolationKind::Options,
                 format!("the landmark separation is {dl}, expected a finite number above 0"),

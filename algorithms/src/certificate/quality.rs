@@ -96,7 +96,9 @@ fn shape(corners: [&[f64]; 3]) -> (f64, f64, f64) {
     let area = area(corners);
     // the smallest angle is opposite of the shortest side
     let angle = if b > 0.0 {
-        (2.0 * area).atan2(0.5 * (b * b + c * c - a * a)).to_degrees()
+        (2.0 * area)
+            .atan2(0.5 * (b * b + c * c - a * a))
+            .to_degrees()
     } else {
         0.0
     };
@@ -177,7 +179,11 @@ pub(super) fn check(mesh: &Mesh, incidence: &Incidence, limits: &Limits) -> Qual
     let lengths = incidence
         .edges
         .iter()
-        .map(|e| mesh.vertices.squared_distance(e[0] as usize, e[1] as usize).sqrt())
+        .map(|e| {
+            mesh.vertices
+                .squared_distance(e[0] as usize, e[1] as usize)
+                .sqrt()
+        })
         .collect();
 
     let mut sets = SignedSets::new(triangles.len());
@@ -245,7 +251,8 @@ mod tests {
 
     #[test]
     fn shape_of_known_triangles() {
-        let (angle, ratio, area) = shape([&[0., 0., 0.], &[1., 0., 0.], &[0.5, 0.75_f64.sqrt(), 0.]]);
+        let (angle, ratio, area) =
+            shape([&[0., 0., 0.], &[1., 0., 0.], &[0.5, 0.75_f64.sqrt(), 0.]]);
         assert!((angle - 60.0).abs() < 1e-9 && (ratio - 1.0).abs() < 1e-12);
         assert!((area - 0.75_f64.sqrt() / 2.0).abs() < 1e-12);
         let (angle, ..) = shape([&[0.0, 0.0], &[1.0, 0.0], &[0.0, 1.0]]);

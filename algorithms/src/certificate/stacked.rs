@@ -66,7 +66,8 @@ impl<'a> Planes<'a> {
     /// projection to that plane overlaps the other by more than `depth`. Seen from both.
     pub fn stacked(&self, s: u32, t: u32, angle: f64, depth: f64, offset: f64) -> bool {
         let n = self.mesh.vertices.dimension();
-        let plane = |t: u32| self.directions[2 * n * t as usize..2 * n * (t as usize + 1)].split_at(n);
+        let plane =
+            |t: u32| self.directions[2 * n * t as usize..2 * n * (t as usize + 1)].split_at(n);
         let ((p, q), (u, v)) = (plane(s), plane(t));
         // smallest singular value of the 2 x 2 matrix of inner products: cosine of the largest
         // principal angle

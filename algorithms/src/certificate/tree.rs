@@ -55,7 +55,9 @@ impl Bounds {
     }
 
     fn size(&self) -> f64 {
-        (0..AXES).map(|k| self.high[k] - self.low[k]).fold(0.0, f64::max)
+        (0..AXES)
+            .map(|k| self.high[k] - self.low[k])
+            .fold(0.0, f64::max)
     }
 }
 
@@ -231,7 +233,12 @@ mod tests {
     fn boxes(corners: &[(f64, f64, f64)]) -> Vec<Bounds> {
         corners
             .iter()
-            .map(|&(x, y, w)| Bounds::around(&[[x, y, 0., 0., 0., 0.], [x + w, y + w, w, 0., 0., 0.]], 0.0))
+            .map(|&(x, y, w)| {
+                Bounds::around(
+                    &[[x, y, 0., 0., 0., 0.], [x + w, y + w, w, 0., 0., 0.]],
+                    0.0,
+                )
+            })
             .collect()
     }
 

@@ -325,7 +325,11 @@ impl fmt::Display for Violation {
             for (k, c) in self.coordinates.iter().take(6).enumerate() {
                 write!(f, "{}{c:.4}", if k == 0 { "" } else { ", " })?;
             }
-            f.write_str(if self.coordinates.len() > 6 { ", ..)" } else { ")" })?;
+            f.write_str(if self.coordinates.len() > 6 {
+                ", ..)"
+            } else {
+                ")"
+            })?;
         }
         write!(f, ". To change: {}.", self.advice)
     }
