@@ -49,6 +49,9 @@ use serde::Serialize;
 /// The dl here is the landmark separation, h the median edge of the mesh.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Limits {
+    /// Least number of edges of a connected part of the boundary. The landmarks around a single
+    /// missing one are about six: a boundary of fewer is below the resolution.
+    pub shortest_boundary: usize,
     /// Least angle between the two triangles at an ordinary edge, degrees; flat is 180.
     pub fold: f64,
     /// Least angle between two of the triangles at a curve edge, degrees. Sheets may cross
@@ -84,6 +87,7 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Self {
+            shortest_boundary: 6,
             fold: 20.0,
             curve_fold: 2.0,
             stacked_angle: 25.0,
@@ -296,7 +300,12 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
         .collect();
     let frame = frame::Frame::new(&mesh.vertices, options.points);
     let quality = quality::check(mesh, &incidence, &options.limits);
-    certificate.edges = Some(edges::check(mesh, &incidence, options.closed));
+    certificate.edges = Some(edges::check(
+        mesh,
+        &incidence,
+        options.closed,
+        options.limits.shortest_boundary,
+    ));
     certificate.links = Some(links::check(
         mesh,
         &incidence,

@@ -52,6 +52,8 @@ pub enum ViolationKind {
     WrongCount,
     /// A boundary edge on a surface that is known to be closed.
     BoundaryOfClosed,
+    /// A boundary of so few edges that it is a missing triangle or two rather than a boundary.
+    SmallHole,
     /// A link that is none of the admissible kinds.
     InadmissibleLink,
     /// A disconnected link where no crossing point was declared.
@@ -93,7 +95,9 @@ impl ViolationKind {
         match self {
             Options | Shape | NoTriangles | IndexOutOfRange | RepeatedCorner | RepeatedTriangle
             | RepeatedCurveEdge | IsolatedVertex | CoincidentVertices => Level::Indices,
-            UndeclaredBoundary | UndeclaredCurve | WrongCount | BoundaryOfClosed => Level::Edges,
+            UndeclaredBoundary | UndeclaredCurve | WrongCount | BoundaryOfClosed | SmallHole => {
+                Level::Edges
+            }
             InadmissibleLink | SplitLink | Pinch | SpecialPoint => Level::Links,
             ZeroArea | Fold | CurveFold | Stacked | SelfIntersection | NearCrossing | Entangled => {
                 Level::Geometry
@@ -120,6 +124,7 @@ impl ViolationKind {
             UndeclaredCurve => "ordinary edges with three or more triangles",
             WrongCount => "curve edges with another number of triangles than of cells",
             BoundaryOfClosed => "boundary edges on a closed surface",
+            SmallHole => "boundaries too short to be resolved",
             InadmissibleLink => "vertices with an inadmissible link",
             SplitLink => "vertices with an undeclared disconnected link",
             Pinch => "vertices with an undeclared figure-eight link",
@@ -171,6 +176,9 @@ impl ViolationKind {
             BoundaryOfClosed => {
                 "increase the triangulation radius, or decrease dl; drop the option if the \
                  surface does have a boundary"
+            }
+            SmallHole => {
+                "increase the triangulation radius to close the hole, or decrease dl to resolve it"
             }
             InadmissibleLink | SplitLink | Pinch => {
                 "decrease dl or the neighborhood radius eps, or move the curve tolerance eps_p"
