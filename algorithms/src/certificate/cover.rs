@@ -5,7 +5,7 @@ use super::frame::Frame;
 use super::geometry::corners;
 use super::quality::quantile;
 use super::tree::{Bounds, Tree};
-use super::{CertificateOptions, Place, Violation, ViolationKind};
+use super::{CertificateOptions, Place, Violation, ViolationKind, within};
 use crosscap_core::{Mesh, PointCloud, squared_distance};
 use serde::Serialize;
 
@@ -158,7 +158,7 @@ pub(super) fn check(
     let Some(points) = options.points.filter(|p| !p.is_empty()) else {
         return report;
     };
-    if !(separation > 0.0) {
+    if separation <= 0.0 {
         // only when every triangle is a point, which has been refused
         return report;
     }
@@ -181,7 +181,7 @@ pub(super) fn check(
             point_triangle(row, a, b, c)
         });
         let d = nearest.map_or(f64::INFINITY, |(_, d)| d.sqrt() / separation);
-        if !(d <= limit) {
+        if !within(d, limit) {
             far.push(Place::Point(p));
         }
         values.push(d);
@@ -217,7 +217,7 @@ pub(super) fn check(
     let (mut far, mut off) = (Vec::new(), Vec::new());
     for v in 0..mesh.complex.vertices {
         let d = nearest(mesh.vertices.point(v)).map_or(0.0, |n| n.1.sqrt() / separation);
-        if !(d <= away_limit) {
+        if !within(d, away_limit) {
             far.push(Place::Vertex(v as u32));
         }
         values.push(d);
@@ -237,7 +237,7 @@ pub(super) fn check(
                 place[k] = p[k] * (1.0 - t) + q[k] * t;
             }
             let d = nearest(&place).map_or(0.0, |n| n.1.sqrt() / separation);
-            if !(d <= away_limit) && seen.last() != Some(&[a, b]) {
+            if !within(d, away_limit) && seen.last() != Some(&[a, b]) {
                 seen.push([a, b]);
                 far.push(Place::Edge([a, b]));
             }
@@ -255,7 +255,7 @@ pub(super) fn check(
             }
             if let Some((q, d)) = nearest(&place) {
                 let d = d.sqrt() / separation;
-                triangle_far |= !(d <= away_limit);
+                triangle_far |= !within(d, away_limit);
                 values.push(d);
                 if inner {
                     let row = points.point(q as usize);
@@ -279,7 +279,7 @@ pub(super) fn check(
         if triangle_far {
             far.push(Place::Triangle(t));
         }
-        if !(triangle_off <= off_limit) {
+        if !within(triangle_off, off_limit) {
             off.push(Place::Triangle(t));
         }
     }

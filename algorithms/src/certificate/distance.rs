@@ -124,8 +124,9 @@ fn solve(mut m: [[f64; 5]; 4], n: usize) -> Option<[f64; 4]> {
         m.swap(k, pivot);
         for i in k + 1..n {
             let f = m[i][k] / m[k][k];
-            for j in k..5 {
-                m[i][j] -= f * m[k][j];
+            let above = m[k];
+            for (x, y) in m[i].iter_mut().zip(above).skip(k) {
+                *x -= f * y;
             }
         }
     }

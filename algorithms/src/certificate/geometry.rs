@@ -6,7 +6,7 @@ use super::frame::Frame;
 use super::incidence::Incidence;
 use super::stacked::Planes;
 use super::tree::{Bounds, Tree};
-use super::{Limits, Place, SpecialPoint, Violation, ViolationKind};
+use super::{Limits, Place, SpecialPoint, Violation, ViolationKind, exceeds};
 use crosscap_core::Mesh;
 use serde::Serialize;
 
@@ -100,8 +100,7 @@ pub(super) fn check(
         .filter(|&t| {
             let [a, b, c] = triangles[t as usize];
             let longest = length(a, b).max(length(a, c)).max(length(b, c)).max(large);
-            // not <, so that a NaN from overflow does not pass
-            !(area(corners(mesh, t)) > limits.zero_area * longest * longest)
+            !exceeds(area(corners(mesh, t)), limits.zero_area * longest * longest)
         })
         .map(Place::Triangle)
         .collect();

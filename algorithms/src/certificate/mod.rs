@@ -242,6 +242,16 @@ impl Certificate {
     }
 }
 
+/// Whether a value is at most the limit. A NaN, which overflow can make of huge coordinates, is not.
+fn within(value: f64, limit: f64) -> bool {
+    value <= limit
+}
+
+/// Whether a value is above the limit; not for a NaN.
+fn exceeds(value: f64, limit: f64) -> bool {
+    value > limit
+}
+
 /// Coordinates of a place of the mesh: of its first vertex.
 fn coordinates(mesh: &Mesh, place: Place) -> Vec<f64> {
     let vertex = match place {

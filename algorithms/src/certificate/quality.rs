@@ -2,7 +2,7 @@
 
 use super::geometry::{area, corners};
 use super::incidence::Incidence;
-use super::{Limits, Place, Violation, ViolationKind};
+use super::{Limits, Place, Violation, ViolationKind, within};
 use crosscap_core::Mesh;
 use serde::Serialize;
 
@@ -173,7 +173,7 @@ pub(super) fn check(mesh: &Mesh, incidence: &Incidence, limits: &Limits) -> Qual
         areas.push(area);
     }
     let needles: Vec<Place> = (0..triangles.len())
-        .filter(|&t| !(angles[t] >= limits.min_angle))
+        .filter(|&t| !within(limits.min_angle, angles[t]))
         .map(|t| Place::Triangle(t as u32))
         .collect();
     let lengths = incidence

@@ -860,8 +860,9 @@ proptest! {
         triangles in proptest::collection::vec([0_u32..9, 0..9, 0..9], 0..12),
         curves in proptest::collection::vec(([0_u32..9, 0..9], 0_u8..6), 0..5),
         values in proptest::collection::vec(0_u8..4, 40),
+        scale in prop_oneof![Just(1.0), Just(1e-200), Just(1e200)],
     ) {
-        let rows = (0..n * dimension).map(|k| f64::from(values[k % 40])).collect();
+        let rows = (0..n * dimension).map(|k| scale * f64::from(values[k % 40])).collect();
         let mesh = Mesh {
             complex: Complex {
                 vertices: n,

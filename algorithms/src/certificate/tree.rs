@@ -17,9 +17,9 @@ impl Bounds {
             high: [f64::NEG_INFINITY; AXES],
         };
         for s in spots {
-            for k in 0..AXES {
-                b.low[k] = b.low[k].min(s[k] - slack);
-                b.high[k] = b.high[k].max(s[k] + slack);
+            for ((low, high), x) in b.low.iter_mut().zip(&mut b.high).zip(s) {
+                *low = low.min(x - slack);
+                *high = high.max(x + slack);
             }
         }
         b
@@ -33,17 +33,17 @@ impl Bounds {
     }
 
     /// Squared distance to a place.
-    fn to_spot(&self, s: &Spot) -> f64 {
+    fn spot_distance(&self, s: &Spot) -> f64 {
         let mut sum = 0.0;
-        for k in 0..AXES {
-            let d = (self.low[k] - s[k]).max(s[k] - self.high[k]).max(0.0);
+        for ((low, high), x) in self.low.iter().zip(&self.high).zip(s) {
+            let d = (low - x).max(x - high).max(0.0);
             sum += d * d;
         }
         sum
     }
 
     /// Squared distance of two boxes.
-    fn to_box(&self, other: &Self) -> f64 {
+    fn box_distance(&self, other: &Self) -> f64 {
         let mut sum = 0.0;
         for k in 0..AXES {
             let d = (self.low[k] - other.high[k])
@@ -155,7 +155,7 @@ impl Tree {
         let mut wide = widen(bound);
         let mut stack: Vec<(u32, f64)> = Vec::with_capacity(64);
         if let Some(root) = self.nodes.first() {
-            stack.push((0, root.bounds.to_spot(spot)));
+            stack.push((0, root.bounds.spot_distance(spot)));
         }
         while let Some((n, away)) = stack.pop() {
             if away > wide {
@@ -164,7 +164,7 @@ impl Tree {
             let node = &self.nodes[n as usize];
             if node.second == 0 {
                 for k in node.start as usize..node.end as usize {
-                    if self.boxes[k].to_spot(spot) <= wide {
+                    if self.boxes[k].spot_distance(spot) <= wide {
                         let item = self.items[k];
                         let d = distance(item);
                         if d < bound {
@@ -175,10 +175,10 @@ impl Tree {
                     }
                 }
             } else {
-                let a = (n + 1, self.nodes[n as usize + 1].bounds.to_spot(spot));
+                let a = (n + 1, self.nodes[n as usize + 1].bounds.spot_distance(spot));
                 let b = (
                     node.second,
-                    self.nodes[node.second as usize].bounds.to_spot(spot),
+                    self.nodes[node.second as usize].bounds.spot_distance(spot),
                 );
                 let (near, far) = if a.1 <= b.1 { (a, b) } else { (b, a) };
                 stack.push(far);
@@ -198,14 +198,14 @@ impl Tree {
         }
         while let Some((m, n)) = stack.pop() {
             let (a, b) = (&self.nodes[m as usize], &self.nodes[n as usize]);
-            if m != n && a.bounds.to_box(&b.bounds) > limit {
+            if m != n && a.bounds.box_distance(&b.bounds) > limit {
                 continue;
             }
             if a.second == 0 && b.second == 0 {
                 for i in a.start as usize..a.end as usize {
                     let from = if m == n { i + 1 } else { b.start as usize };
                     for j in from..b.end as usize {
-                        let away = self.boxes[i].to_box(&self.boxes[j]);
+                        let away = self.boxes[i].box_distance(&self.boxes[j]);
                         if away <= limit {
                             let (s, t) = (self.items[i], self.items[j]);
                             if !visit(s.min(t), s.max(t), away) {
@@ -255,12 +255,12 @@ mod tests {
             found.sort_unstable();
             let mut expected = vec![];
             for i in 0..b.len() { for j in i + 1..b.len() {
-                if b[i].to_box(&b[j]) <= reach * reach { expected.push((i as u32, j as u32)); }
+                if b[i].box_distance(&b[j]) <= reach * reach { expected.push((i as u32, j as u32)); }
             } }
             prop_assert_eq!(found, expected);
             let spot = [x, 4.0, 0.5, 0., 0., 0.];
-            let near = tree.nearest(&spot, 0.0, f64::INFINITY, |i| b[i as usize].to_spot(&spot)).unwrap();
-            let least = b.iter().map(|q| q.to_spot(&spot)).fold(f64::INFINITY, f64::min);
+            let near = tree.nearest(&spot, 0.0, f64::INFINITY, |i| b[i as usize].spot_distance(&spot)).unwrap();
+            let least = b.iter().map(|q| q.spot_distance(&spot)).fold(f64::INFINITY, f64::min);
             prop_assert_eq!(near.1, least);
         }
     }
