@@ -1,1 +1,349 @@
-//! Verdict on a mesh: levels of validity, each a typed report.
+//! Verdict on a mesh: levels of validity, each a typed report with the places of what is wrong.
+//!
+//! Betti numbers are no acceptance test: thick or folded complexes can have the right ones. A
+//! mesh is verified when all of these hold.
+//!
+//! | level | asks | report |
+//! | --- | --- | --- |
+//! | indices | a simplicial complex with distinct places | [`IndexReport`] |
+//! | edges | every edge has the triangles that its stratum allows | [`EdgeReport`] |
+//! | links | every vertex looks like a point of a surface that may cross itself | [`LinkReport`] |
+//! | geometry | no folds, no overlaps, no crossings off the declared curves | [`GeometryReport`] |
+//! | cover | mesh and points are near each other, all landmarks are used | [`CoverReport`] |
+//! | quality | no needles; figures for the reader | [`QualityReport`] |
+//!
+//! Nothing here knows the true surface. What cannot be decided without it (the right Betti
+//! numbers, a handle too small for the landmarks) is not decided.
+
+mod cover;
+mod crossing;
+mod display;
+mod distance;
+mod edges;
+mod frame;
+mod geometry;
+mod incidence;
+mod indices;
+mod links;
+mod quality;
+mod stacked;
+mod tree;
+mod violation;
+
+#[cfg(test)]
+mod tests;
+
+pub use cover::{CoverReport, Distances};
+pub use edges::EdgeReport;
+pub use geometry::GeometryReport;
+pub use indices::IndexReport;
+pub use links::{LinkKind, LinkReport, SpecialPoint};
+pub use quality::{Cell, QualityReport, Spread};
+pub use violation::{Level, Place, Verdict, Violation, ViolationKind};
+
+use crosscap_core::{Mesh, PointCloud};
+use serde::Serialize;
+
+/// Thresholds of the certificate. A value at the limit is allowed.
+///
+/// The dl here is the landmark separation, h the median edge of the mesh.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Limits {
+    /// Least number of edges of a connected part of the boundary. The landmarks around a single
+    /// missing one are about six: a boundary of fewer is below the resolution.
+    pub shortest_boundary: usize,
+    /// Least angle between the two triangles at an ordinary edge, degrees; flat is 180.
+    pub fold: f64,
+    /// Least angle between two of the triangles at a curve edge, degrees. Sheets may cross
+    /// at a small angle; below this they are the same.
+    pub curve_fold: f64,
+    /// Greatest angle of two planes whose triangles can be stacked, degrees.
+    pub stacked_angle: f64,
+    /// Offset below which two triangles can be stacked, in h.
+    pub stacked_offset: f64,
+    /// Depth of overlap above which two triangles are stacked, in h.
+    pub stacked_depth: f64,
+    /// Distance up to which two triangles without a common vertex touch, in h; used above
+    /// dimension 3, where rounding leaves nothing to cross exactly.
+    pub contact: f64,
+    /// Area up to which a triangle is called flat, in squares of its longest edge.
+    pub zero_area: f64,
+    /// Least angle of a triangle, degrees.
+    pub min_angle: f64,
+    /// Greatest distance of an input point to the mesh, in dl. No point of a surface is further
+    /// than dl from a landmark, and a triangulated neighborhood is nearer than that; the middle
+    /// of a missing star of triangles is about dl away.
+    pub points_to_mesh: f64,
+    /// Greatest distance of a place of the mesh to the input points, in dl, beyond the
+    /// estimated gap of the points; and greatest distance of the nearest point to the
+    /// triangle's plane.
+    pub mesh_to_points: f64,
+    /// Greatest number of unused landmarks, as a part of the number of vertices.
+    pub unused_landmarks: f64,
+    /// How many input points are looked up in the mesh at most; picked evenly and always alike.
+    pub points_tested: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            shortest_boundary: 6,
+            fold: 20.0,
+            curve_fold: 2.0,
+            stacked_angle: 25.0,
+            stacked_offset: 0.35,
+            stacked_depth: 0.06,
+            contact: 1e-3,
+            zero_area: 1e-7,
+            min_angle: 0.1,
+            points_to_mesh: 0.75,
+            mesh_to_points: 0.5,
+            unused_landmarks: 0.01,
+            points_tested: 200_000,
+        }
+    }
+}
+
+/// What is known beside the mesh.
+#[derive(Clone, Debug)]
+pub struct CertificateOptions<'a> {
+    /// The input points, all of them; without them the distances are not measured.
+    pub points: Option<&'a PointCloud<f64>>,
+    /// Landmark separation dl, unit of the data; 3/4 of the median edge when left out.
+    pub landmark_separation: Option<f64>,
+    /// Rows of the input that were selected as landmarks and are not in the mesh.
+    pub unused_landmarks: &'a [usize],
+    /// Strata of dimension 0: vertices whose link is declared.
+    pub special_points: &'a [SpecialPoint],
+    /// Kinds of link that need no declaration.
+    pub admissible_links: &'a [LinkKind],
+    /// Whether the surface is known to have no boundary.
+    pub closed: bool,
+    /// How far input points lie off the surface, typically; unit of the data. Four times this is
+    /// added to the limits of the cover.
+    pub noise: f64,
+    /// Thresholds.
+    pub limits: Limits,
+}
+
+impl Default for CertificateOptions<'_> {
+    fn default() -> Self {
+        Self {
+            points: None,
+            landmark_separation: None,
+            unused_landmarks: &[],
+            special_points: &[],
+            admissible_links: &LinkKind::GENERIC,
+            closed: false,
+            noise: 0.0,
+            limits: Limits::default(),
+        }
+    }
+}
+
+impl CertificateOptions<'_> {
+    /// What is wrong with the options, if anything.
+    fn fault(&self, mesh: &Mesh) -> Option<Violation> {
+        let l = &self.limits;
+        let named = [
+            ("fold", l.fold),
+            ("curve_fold", l.curve_fold),
+            ("stacked_angle", l.stacked_angle),
+            ("stacked_offset", l.stacked_offset),
+            ("stacked_depth", l.stacked_depth),
+            ("contact", l.contact),
+            ("zero_area", l.zero_area),
+            ("min_angle", l.min_angle),
+            ("points_to_mesh", l.points_to_mesh),
+            ("mesh_to_points", l.mesh_to_points),
+            ("unused_landmarks", l.unused_landmarks),
+            ("noise", self.noise),
+        ];
+        if let Some((name, value)) = named.iter().find(|n| !(n.1 >= 0.0 && n.1.is_finite())) {
+            return Some(Violation::whole(
+                ViolationKind::Options,
+                format!("{name} is {value}, expected a finite number of at least 0"),
+            ));
+        }
+        if let Some(dl) = self
+            .landmark_separation
+            .filter(|d| !(*d > 0.0 && d.is_finite()))
+        {
+            return Some(Violation::whole(
+                ViolationKind::Options,
+                format!("the landmark separation is {dl}, expected a finite number above 0"),
+            ));
+        }
+        if let Some(points) = self
+            .points
+            .filter(|p| p.dimension() != mesh.vertices.dimension())
+        {
+            return Some(Violation::whole(
+                ViolationKind::Shape,
+                format!(
+                    "vertices in dimension {}, points in dimension {}",
+                    mesh.vertices.dimension(),
+                    points.dimension()
+                ),
+            ));
+        }
+        if self.points.is_some_and(|p| u32::try_from(p.len()).is_err()) {
+            return Some(Violation::whole(
+                ViolationKind::Options,
+                "more than 2^32 points".into(),
+            ));
+        }
+        None
+    }
+}
+
+/// The reports of all levels. A level that could not be asked, because an earlier one found
+/// the arrays unusable, is missing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Certificate {
+    /// Whether the arrays are those of a simplicial complex with distinct places.
+    pub indices: IndexReport,
+    /// Triangles at every edge.
+    pub edges: Option<EdgeReport>,
+    /// Links of all vertices.
+    pub links: Option<LinkReport>,
+    /// Folds, overlaps and crossings.
+    pub geometry: Option<GeometryReport>,
+    /// Distances between mesh and points.
+    pub cover: Option<CoverReport>,
+    /// Shapes of triangles.
+    pub quality: Option<QualityReport>,
+}
+
+impl Certificate {
+    /// Everything that is wrong, in the order of the levels.
+    pub fn violations(&self) -> impl Iterator<Item = &Violation> {
+        let later = [
+            self.edges.as_ref().map(|r| &r.violations),
+            self.links.as_ref().map(|r| &r.violations),
+            self.geometry.as_ref().map(|r| &r.violations),
+            self.cover.as_ref().map(|r| &r.violations),
+            self.quality.as_ref().map(|r| &r.violations),
+        ];
+        self.indices
+            .violations
+            .iter()
+            .chain(later.into_iter().flatten().flatten())
+    }
+
+    /// Whether the mesh may be handed over as good.
+    pub fn verdict(&self) -> Verdict {
+        let all: Vec<Violation> = self.violations().cloned().collect();
+        if all.is_empty() {
+            Verdict::Verified
+        } else {
+            Verdict::Refused(all)
+        }
+    }
+}
+
+/// Whether a value is at most the limit. A NaN, which overflow can make of huge coordinates, is not.
+fn within(value: f64, limit: f64) -> bool {
+    value <= limit
+}
+
+/// Whether a value is above the limit; not for a NaN.
+fn exceeds(value: f64, limit: f64) -> bool {
+    value > limit
+}
+
+/// Coordinates of a place of the mesh: of its first vertex.
+fn coordinates(mesh: &Mesh, place: Place) -> Vec<f64> {
+    let vertex = match place {
+        Place::Vertex(v) | Place::Vertices([v, _]) | Place::Edge([v, _]) => Some(v),
+        Place::Triangle(t) | Place::Triangles([t, _]) => {
+            mesh.complex.triangles.get(t as usize).map(|t| t[0])
+        }
+        Place::CurveEdge(e) => mesh.complex.curve_edges.get(e as usize).map(|e| e.ends[0]),
+        Place::Point(_) => None,
+    };
+    vertex
+        .filter(|&v| (v as usize) < mesh.vertices.len())
+        .map(|v| mesh.vertices.point(v as usize).to_vec())
+        .unwrap_or_default()
+}
+
+/// Asks a mesh everything that can be decided without knowing the true surface.
+///
+/// Never panics, whatever the arrays say. O((t + p) log t) for t triangles and p points
+/// of bounded density; memory O(t + p). The same input gives the same certificate.
+///
+/// ```
+/// use crosscap_algorithms::certificate::{CertificateOptions, ViolationKind, certify};
+/// use crosscap_core::{Complex, Mesh, PointCloud};
+/// let faces = vec![[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
+/// let corners = vec![1., 1., 1., 1., -1., -1., -1., 1., -1., -1., -1., 1.];
+/// let mesh = |faces| {
+///     let complex = Complex::new(4, faces, vec![]).unwrap();
+///     Mesh::new(complex, PointCloud::new(3, corners.clone()).unwrap(), vec![-1; 4]).unwrap()
+/// };
+/// let options = CertificateOptions::default();
+/// assert!(certify(&mesh(faces.clone()), &options).verdict().is_verified());
+/// let certificate = certify(&mesh(faces[1..].to_vec()), &options);
+/// assert_eq!(certificate.violations().next().unwrap().kind, ViolationKind::UndeclaredBoundary);
+/// ```
+pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
+    let mut certificate = Certificate {
+        indices: indices::check(mesh),
+        edges: None,
+        links: None,
+        geometry: None,
+        cover: None,
+        quality: None,
+    };
+    if let Some(fault) = options.fault(mesh) {
+        certificate.indices.violations.push(fault);
+        certificate.indices.usable = false;
+    }
+    if !certificate.indices.usable {
+        return certificate;
+    }
+    let incidence = incidence::Incidence::new(&mesh.complex);
+    let bare: Vec<[u32; 2]> = (0..incidence.edges.len())
+        .filter(|&e| incidence.at_edge(e).is_empty())
+        .map(|e| incidence.edges[e])
+        .collect();
+    let frame = frame::Frame::new(&mesh.vertices, options.points);
+    let quality = quality::check(mesh, &incidence, &options.limits);
+    certificate.edges = Some(edges::check(
+        mesh,
+        &incidence,
+        options.closed,
+        options.limits.shortest_boundary,
+    ));
+    certificate.links = Some(links::check(
+        mesh,
+        &incidence,
+        options.admissible_links,
+        options.special_points,
+    ));
+    let triangles = geometry::tree(mesh, &frame, &[]);
+    certificate.geometry = Some(geometry::check(
+        mesh,
+        &incidence,
+        &frame,
+        &triangles,
+        &options.limits,
+        options.special_points,
+    ));
+    let all = if bare.is_empty() {
+        triangles
+    } else {
+        geometry::tree(mesh, &frame, &bare)
+    };
+    certificate.cover = Some(cover::check(
+        mesh,
+        &frame,
+        &all,
+        &bare,
+        quality.edge_length.median,
+        options,
+    ));
+    certificate.quality = Some(quality);
+    certificate
+}

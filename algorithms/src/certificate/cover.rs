@@ -1,0 +1,342 @@
+//! Fifth level: mesh and points are near each other, both ways.
+
+use super::distance::point_triangle;
+use super::frame::Frame;
+use super::geometry::corners;
+use super::quality::quantile;
+use super::tree::{Bounds, Tree};
+use super::{CertificateOptions, Place, Violation, ViolationKind, within};
+use crosscap_core::{Mesh, PointCloud, squared_distance};
+use serde::Serialize;
+
+/// A distribution of distances, in units of the landmark separation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Distances {
+    /// How many were measured.
+    pub count: usize,
+    /// Largest.
+    pub max: f64,
+    /// 99 percent are below.
+    pub q99: f64,
+    /// Mean.
+    pub mean: f64,
+}
+
+impl Distances {
+    fn of(mut values: Vec<f64>) -> Self {
+        values.sort_unstable_by(f64::total_cmp);
+        Self {
+            count: values.len(),
+            max: quantile(&values, 1.0),
+            q99: quantile(&values, 0.99),
+            mean: values.iter().sum::<f64>() / values.len().max(1) as f64,
+        }
+    }
+}
+
+/// Distances both ways between mesh and points, and landmarks that were left out.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct CoverReport {
+    /// The unit of the other lengths: the landmark separation dl, unit of the data.
+    pub landmark_separation: f64,
+    /// Whether it was given; otherwise it is guessed as 3/4 of the median edge.
+    pub separation_given: bool,
+    /// Median distance of an input point to its nearest other point, in dl.
+    pub point_spacing: f64,
+    /// Radius of the largest ball around a place of the surface that may hold no input
+    /// point, estimated from the nearest-neighbor distances, in dl.
+    pub point_gap: f64,
+    /// Input points to the mesh, in dl.
+    pub points_to_mesh: Option<Distances>,
+    /// Places of the mesh (vertices, edge midpoints, inner places of triangles) to the nearest
+    /// input point, in dl.
+    pub mesh_to_points: Option<Distances>,
+    /// The nearest input points of the inner places to the planes of their triangles, in dl.
+    pub mesh_off_points: Option<Distances>,
+    /// Number of landmarks that are not in the mesh.
+    pub unused_landmarks: usize,
+    /// What is wrong.
+    pub violations: Vec<Violation>,
+}
+
+/// Mixes the bits of a counter, for picks that are spread evenly and always the same.
+fn mix(k: u64) -> u64 {
+    let mut z = k.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// At most `budget` of `0..n`, one out of each of `budget` equal stretches.
+fn picks(n: usize, budget: usize) -> impl Iterator<Item = usize> {
+    let budget = budget.min(n);
+    (0..budget).map(move |k| {
+        let cut = |k: usize| (k as u128 * n as u128 / budget as u128) as usize;
+        let (from, to) = (cut(k), cut(k + 1));
+        from + (mix(k as u64) % (to - from) as u64) as usize
+    })
+}
+
+/// Spacing and gap of the points: the median distance to the nearest other point, and the
+/// radius of the largest hole that a good sample of this kind has.
+///
+/// For points of density r scattered at random over a surface the median is sqrt(ln 2 / (pi r))
+/// and the largest of about n independent holes is sqrt(ln n / (pi r)). For points chosen with a
+/// least distance, as many as fit, no hole is larger than that distance. How the low quantiles
+/// compare with the median tells the two apart.
+fn spacing(points: &PointCloud<f64>, frame: &Frame, tree: &Tree) -> (f64, f64) {
+    let mut near: Vec<f64> = picks(points.len(), 3000)
+        .filter_map(|p| {
+            let row = points.point(p);
+            tree.nearest(&frame.spot(row), frame.slack, f64::INFINITY, |q| {
+                let d = squared_distance(row, points.point(q as usize));
+                // the point itself, and its copies
+                if d > 0.0 { d } else { f64::INFINITY }
+            })
+            .map(|(_, d)| d.sqrt())
+        })
+        .collect();
+    near.sort_unstable_by(f64::total_cmp);
+    let median = quantile(&near, 0.5);
+    if median == 0.0 {
+        return (0.0, 0.0);
+    }
+    let random = ((points.len().max(2) as f64).ln() / std::f64::consts::LN_2).sqrt();
+    let evenness = quantile(&near, 0.05) / median;
+    let scattered = ((0.9 - evenness) / (0.9 - 0.27)).clamp(0.0, 1.0);
+    (
+        median,
+        median * (1.15 + (random - 1.15).max(0.0) * scattered),
+    )
+}
+
+/// Barycentric steps of a triangle whose sides are sampled at the latter's middle at least.
+fn steps(corners: [&[f64]; 3], separation: f64) -> usize {
+    let longest = (0..3)
+        .map(|k| squared_distance(corners[k], corners[(k + 1) % 3]))
+        .fold(0.0, f64::max)
+        .sqrt();
+    let pieces = (longest / (2.0 * separation)).ceil();
+    2 * (pieces.min(12.0) as usize).max(1)
+}
+
+pub(super) fn check(
+    mesh: &Mesh,
+    frame: &Frame,
+    tree: &Tree,
+    bare: &[[u32; 2]],
+    median_edge: f64,
+    options: &CertificateOptions<'_>,
+) -> CoverReport {
+    let limits = &options.limits;
+    let separation = options.landmark_separation.unwrap_or(0.75 * median_edge);
+    let mut report = CoverReport {
+        landmark_separation: separation,
+        separation_given: options.landmark_separation.is_some(),
+        unused_landmarks: options.unused_landmarks.len(),
+        ..CoverReport::default()
+    };
+    let allowed = (limits.unused_landmarks * mesh.complex.vertices as f64).floor();
+    if report.unused_landmarks as f64 > allowed {
+        let places = options
+            .unused_landmarks
+            .iter()
+            .map(|&p| Place::Point(p))
+            .collect();
+        let violation = Violation::at(ViolationKind::UnusedLandmarks, places, |p| match p {
+            Place::Point(p) => options
+                .points
+                .filter(|c| p < c.len())
+                .map(|c| c.point(p).to_vec())
+                .unwrap_or_default(),
+            _ => Vec::new(),
+        });
+        report
+            .violations
+            .extend(violation.map(|v| v.measured(options.unused_landmarks.len() as f64, allowed)));
+    }
+    let Some(points) = options.points.filter(|p| !p.is_empty()) else {
+        return report;
+    };
+    if separation <= 0.0 {
+        // only when every triangle is a point, which has been refused
+        return report;
+    }
+    let noise = 4.0 * options.noise / separation;
+
+    // points to mesh
+    let count = mesh.complex.triangles.len();
+    let limit = limits.points_to_mesh + noise;
+    let (mut values, mut far) = (Vec::new(), Vec::new());
+    for p in picks(points.len(), limits.points_tested) {
+        let row = points.point(p);
+        let nearest = tree.nearest(&frame.spot(row), frame.slack, f64::INFINITY, |item| {
+            let item = item as usize;
+            let [a, b, c] = if item < count {
+                corners(mesh, item as u32)
+            } else {
+                let [a, b] = bare[item - count];
+                [a, b, b].map(|v| mesh.vertices.point(v as usize))
+            };
+            point_triangle(row, a, b, c)
+        });
+        let d = nearest.map_or(f64::INFINITY, |(_, d)| d.sqrt() / separation);
+        if !within(d, limit) {
+            far.push(Place::Point(p));
+        }
+        values.push(d);
+    }
+    let distances = Distances::of(values);
+    report.violations.extend(
+        Violation::at(ViolationKind::UncoveredPoints, far, |p| match p {
+            Place::Point(p) => points.point(p).to_vec(),
+            _ => Vec::new(),
+        })
+        .map(|v| v.measured(distances.max, limit)),
+    );
+    report.points_to_mesh = Some(distances);
+
+    // mesh to points
+    let spots: Vec<Bounds> = points
+        .iter()
+        .map(|row| Bounds::around(&[frame.spot(row)], frame.slack))
+        .collect();
+    let cloud = Tree::new(&spots);
+    drop(spots);
+    let (median, gap) = spacing(points, frame, &cloud);
+    report.point_spacing = median / separation;
+    report.point_gap = gap / separation;
+    let nearest = |row: &[f64]| {
+        cloud.nearest(&frame.spot(row), frame.slack, f64::INFINITY, |q| {
+            squared_distance(row, points.point(q as usize))
+        })
+    };
+    let away_limit = limits.mesh_to_points + noise + report.point_gap;
+    let off_limit = limits.mesh_to_points + noise;
+    let (mut values, mut off_values) = (Vec::new(), Vec::new());
+    let (mut far, mut off) = (Vec::new(), Vec::new());
+    for v in 0..mesh.complex.vertices {
+        let d = nearest(mesh.vertices.point(v)).map_or(0.0, |n| n.1.sqrt() / separation);
+        if !within(d, away_limit) {
+            far.push(Place::Vertex(v as u32));
+        }
+        values.push(d);
+    }
+    let n = points.dimension();
+    let mut place = vec![0.0; n];
+    let mut seen: Vec<[u32; 2]> = Vec::new();
+    for &[a, b] in bare {
+        let (p, q) = (
+            mesh.vertices.point(a as usize),
+            mesh.vertices.point(b as usize),
+        );
+        let pieces = steps([p, q, q], separation);
+        for i in 1..pieces {
+            let t = i as f64 / pieces as f64;
+            for k in 0..n {
+                place[k] = p[k] * (1.0 - t) + q[k] * t;
+            }
+            let d = nearest(&place).map_or(0.0, |n| n.1.sqrt() / separation);
+            if !within(d, away_limit) && seen.last() != Some(&[a, b]) {
+                seen.push([a, b]);
+                far.push(Place::Edge([a, b]));
+            }
+            values.push(d);
+        }
+    }
+    for t in 0..count as u32 {
+        let c = corners(mesh, t);
+        let pieces = steps(c, separation);
+        let mut triangle_far = false;
+        let mut triangle_off = 0.0_f64;
+        let mut weigh = |weights: [f64; 3], inner: bool| {
+            for k in 0..n {
+                place[k] = weights[0] * c[0][k] + weights[1] * c[1][k] + weights[2] * c[2][k];
+            }
+            if let Some((q, d)) = nearest(&place) {
+                let d = d.sqrt() / separation;
+                triangle_far |= !within(d, away_limit);
+                values.push(d);
+                if inner {
+                    let row = points.point(q as usize);
+                    let height = off_plane(row, &place, c) / separation;
+                    triangle_off = triangle_off.max(height);
+                    off_values.push(height);
+                }
+            }
+        };
+        weigh([1.0 / 3.0; 3], true);
+        for i in 0..=pieces {
+            for j in 0..=pieces - i {
+                let k = pieces - i - j;
+                let zeros = [i, j, k].iter().filter(|&&x| x == 0).count();
+                if zeros < 2 {
+                    let m = pieces as f64;
+                    weigh([i as f64 / m, j as f64 / m, k as f64 / m], zeros == 0);
+                }
+            }
+        }
+        if triangle_far {
+            far.push(Place::Triangle(t));
+        }
+        if !within(triangle_off, off_limit) {
+            off.push(Place::Triangle(t));
+        }
+    }
+    let distances = Distances::of(values);
+    let heights = Distances::of(off_values);
+    let at = |p: Place| super::coordinates(mesh, p);
+    report.violations.extend(
+        Violation::at(ViolationKind::MeshFarFromPoints, far, at)
+            .map(|v| v.measured(distances.max, away_limit)),
+    );
+    report.violations.extend(
+        Violation::at(ViolationKind::MeshOffPoints, off, at)
+            .map(|v| v.measured(heights.max, off_limit)),
+    );
+    report.mesh_to_points = Some(distances);
+    report.mesh_off_points = Some(heights);
+    report
+}
+
+/// Distance of `point` to the plane through `place` that is parallel to the triangle.
+fn off_plane(point: &[f64], place: &[f64], [a, b, c]: [&[f64]; 3]) -> f64 {
+    let (mut uu, mut uv, mut vv, mut wu, mut wv, mut ww) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for k in 0..point.len() {
+        let (u, v, w) = (b[k] - a[k], c[k] - a[k], point[k] - place[k]);
+        uu += u * u;
+        uv += u * v;
+        vv += v * v;
+        wu += w * u;
+        wv += w * v;
+        ww += w * w;
+    }
+    let determinant = uu * vv - uv * uv;
+    let inside = if determinant > 1e-14 * uu * vv {
+        (vv * wu * wu - 2.0 * uv * wu * wv + uu * wv * wv) / determinant
+    } else {
+        0.0
+    };
+    (ww - inside).max(0.0).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn picks_are_within_and_distinct() {
+        for (n, budget) in [(10, 3), (1000, 999), (5, 50), (0, 4)] {
+            let all: Vec<usize> = picks(n, budget).collect();
+            assert_eq!(all.len(), budget.min(n));
+            assert!(all.windows(2).all(|w| w[0] < w[1]));
+            assert!(all.iter().all(|&i| i < n));
+        }
+    }
+
+    #[test]
+    fn height_over_a_plane() {
+        let t: [&[f64]; 3] = [&[0., 0., 0.], &[2., 0., 0.], &[0., 2., 0.]];
+        assert!((off_plane(&[7., 3., 0.5], &[0.5, 0.5, 0.], t) - 0.5).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,89 @@
+//! The certificate in lines for a reader.
+
+use super::{Certificate, Distances};
+use std::fmt;
+
+fn list<K: fmt::Display>(items: impl Iterator<Item = (K, usize)>) -> String {
+    items
+        .map(|(k, n)| format!("{n} {k}"))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+fn distances(f: &mut fmt::Formatter<'_>, name: &str, d: Option<&Distances>) -> fmt::Result {
+    if let Some(d) = d {
+        write!(
+            f,
+            "\n           {name}: max {:.3}, 99% {:.3}, mean {:.3} dl ({} measured)",
+            d.max, d.q99, d.mean, d.count
+        )?;
+    }
+    Ok(())
+}
+
+impl fmt::Display for Certificate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let i = &self.indices;
+        write!(
+            f,
+            "indices    {} vertices in R^{}, {} triangles, {} curve edges",
+            i.vertices, i.dimension, i.triangles, i.curve_edges
+        )?;
+        if let Some(e) = &self.edges {
+            let by = e.by_triangles.iter();
+            let counts = list(by.map(|(k, &n)| (format!("with {k}"), n)));
+            write!(f, "\nedges      {}: {counts} triangles", e.edges)?;
+        }
+        if let Some(l) = &self.links {
+            let census = l.census.iter();
+            let kinds = list(census.map(|(k, &n)| (format!("{k:?}").to_lowercase(), n)));
+            write!(f, "\nlinks      {kinds}")?;
+        }
+        if let Some(g) = &self.geometry {
+            write!(
+                f,
+                "\ngeometry   {} folds (smallest angle {:.1} degrees, {} below 45), {} stacked pairs, {} crossings",
+                g.folds, g.smallest_dihedral, g.sharp_edges, g.stacked_pairs, g.crossings
+            )?;
+        }
+        if let Some(c) = &self.cover {
+            write!(
+                f,
+                "\ncover      dl {:.4}{}, {} landmarks unused",
+                c.landmark_separation,
+                if c.separation_given { "" } else { " (guessed)" },
+                c.unused_landmarks
+            )?;
+            if c.points_to_mesh.is_some() {
+                write!(
+                    f,
+                    "; points {:.3} dl apart, gaps up to about {:.3} dl",
+                    c.point_spacing, c.point_gap
+                )?;
+            }
+            distances(f, "points to mesh", c.points_to_mesh.as_ref())?;
+            distances(f, "mesh to points", c.mesh_to_points.as_ref())?;
+            distances(f, "points off planes", c.mesh_off_points.as_ref())?;
+        }
+        if let Some(q) = &self.quality {
+            let twisted = q.cells.iter().filter(|c| !c.orientable).count();
+            write!(
+                f,
+                "\nquality    angles from {:.1} degrees (median {:.1}), edges {:.4} to {:.4} (median {:.4}), area {:.4}",
+                q.min_angle.min,
+                q.min_angle.median,
+                q.edge_length.min,
+                q.edge_length.max,
+                q.edge_length.median,
+                q.area
+            )?;
+            write!(
+                f,
+                "\n           {} components, {} cells, {twisted} of them not orientable",
+                q.components,
+                q.cells.len()
+            )?;
+        }
+        write!(f, "\nverdict    {}", self.verdict())
+    }
+}

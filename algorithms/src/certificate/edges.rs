@@ -1,0 +1,118 @@
+//! Second level: every edge has the number of triangles that its stratum allows.
+
+use super::incidence::Incidence;
+use super::{Place, Violation, ViolationKind};
+use crosscap_core::Mesh;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Edges by their number of triangles and by what they are marked as.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct EdgeReport {
+    /// Number of edges, of triangles and of curves.
+    pub edges: usize,
+    /// Number of edges by their number of triangles.
+    pub by_triangles: BTreeMap<usize, usize>,
+    /// Number of edges that are not marked.
+    pub ordinary: usize,
+    /// Number of curve edges by the number of cells they are marked with.
+    pub curves: BTreeMap<u8, usize>,
+    /// Number of edges of every connected part of the boundary, shortest first. Boundaries
+    /// that cross each other are one part.
+    pub boundaries: Vec<usize>,
+    /// What is wrong.
+    pub violations: Vec<Violation>,
+}
+
+pub(super) fn check(
+    mesh: &Mesh,
+    incidence: &Incidence,
+    closed: bool,
+    shortest_boundary: usize,
+) -> EdgeReport {
+    let mut report = EdgeReport {
+        edges: incidence.edges.len(),
+        ..EdgeReport::default()
+    };
+    let (mut holes, mut curves, mut wrong, mut open) = (vec![], vec![], vec![], vec![]);
+    for (e, &ends) in incidence.edges.iter().enumerate() {
+        let found = incidence.at_edge(e).len();
+        *report.by_triangles.entry(found).or_default() += 1;
+        match incidence.cells[e] {
+            Some(cells) => {
+                *report.curves.entry(cells).or_default() += 1;
+                if found != cells as usize {
+                    wrong.push(Place::Edge(ends));
+                }
+                if closed && cells == 1 {
+                    open.push(Place::Edge(ends));
+                }
+            }
+            None => {
+                report.ordinary += 1;
+                match found {
+                    2 => {}
+                    1 => holes.push(Place::Edge(ends)),
+                    _ => curves.push(Place::Edge(ends)),
+                }
+            }
+        }
+    }
+    let parts = boundary_parts(incidence);
+    report.boundaries = parts.iter().map(|p| p.0).collect();
+    let small = parts
+        .iter()
+        .filter(|p| p.0 < shortest_boundary)
+        .map(|p| Place::Edge(p.1))
+        .collect();
+    use ViolationKind::*;
+    for (kind, places) in [
+        (UndeclaredBoundary, holes),
+        (UndeclaredCurve, curves),
+        (WrongCount, wrong),
+        (BoundaryOfClosed, open),
+        (SmallHole, small),
+    ] {
+        report
+            .violations
+            .extend(Violation::at(kind, places, |p| super::coordinates(mesh, p)));
+    }
+    report
+}
+
+/// Connected parts of the declared boundary: number of edges and first edge, shortest first.
+fn boundary_parts(incidence: &Incidence) -> Vec<(usize, [u32; 2])> {
+    let mut ways: Vec<[u32; 2]> = incidence
+        .edges
+        .iter()
+        .zip(&incidence.cells)
+        .enumerate()
+        .filter(|(e, (_, cells))| **cells == Some(1) && incidence.at_edge(*e).len() == 1)
+        .flat_map(|(_, (&[a, b], _))| [[a, b], [b, a]])
+        .collect();
+    ways.sort_unstable();
+    let mut seen = vec![false; ways.len()];
+    let mut parts = Vec::new();
+    let mut stack = Vec::new();
+    for start in 0..ways.len() {
+        if seen[start] {
+            continue;
+        }
+        // every edge of the part is met once from either end
+        let mut met = 0;
+        stack.push(ways[start][0]);
+        while let Some(v) = stack.pop() {
+            let from = ways.partition_point(|w| w[0] < v);
+            for k in (from..ways.len()).take_while(|&k| ways[k][0] == v) {
+                if !seen[k] {
+                    seen[k] = true;
+                    met += 1;
+                    stack.push(ways[k][1]);
+                }
+            }
+        }
+        parts.push((met / 2, ways[start]));
+    }
+    parts.sort_unstable();
+    parts
+}

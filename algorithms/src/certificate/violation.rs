@@ -1,0 +1,376 @@
+//! What can be wrong with a mesh: kinds, places, and what to change.
+
+use serde::Serialize;
+use std::fmt;
+
+/// Levels of validity, from the plainest to the one that needs the points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Level {
+    /// The arrays are those of a simplicial complex with distinct places.
+    Indices,
+    /// Every edge has the number of triangles that its stratum allows.
+    Edges,
+    /// Every vertex has a neighborhood of an admissible kind.
+    Links,
+    /// Triangles meet in common faces only.
+    Geometry,
+    /// Mesh and points are near each other, both ways.
+    Cover,
+    /// Triangles are not needles.
+    Quality,
+}
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum ViolationKind {
+    /// An option of the certificate itself has no meaning.
+    Options,
+    /// Number of vertices and number of places differ.
+    Shape,
+    /// There is no triangle.
+    NoTriangles,
+    /// A triangle or a curve edge names a vertex that does not exist.
+    IndexOutOfRange,
+    /// A triangle or a curve edge names a vertex twice.
+    RepeatedCorner,
+    /// A triangle is there twice.
+    RepeatedTriangle,
+    /// A curve edge is there twice.
+    RepeatedCurveEdge,
+    /// A vertex belongs to no triangle and no curve edge.
+    IsolatedVertex,
+    /// Two vertices at the same place.
+    CoincidentVertices,
+    /// An unmarked edge with one triangle: a hole, or a boundary that nobody declared.
+    UndeclaredBoundary,
+    /// An unmarked edge with three or more triangles.
+    UndeclaredCurve,
+    /// A curve edge whose number of triangles differs from its number of cells.
+    WrongCount,
+    /// A boundary edge on a surface that is known to be closed.
+    BoundaryOfClosed,
+    /// A boundary of so few edges that it is a missing triangle or two rather than a boundary.
+    SmallHole,
+    /// A link that is none of the admissible kinds.
+    InadmissibleLink,
+    /// A disconnected link where no crossing point was declared.
+    SplitLink,
+    /// A figure-eight link where no pinch point was declared.
+    Pinch,
+    /// A declared special point whose link is of another kind.
+    SpecialPoint,
+    /// A triangle without area.
+    ZeroArea,
+    /// Two triangles folded onto each other over an ordinary edge.
+    Fold,
+    /// Two of the triangles at a curve edge lie on each other.
+    CurveFold,
+    /// Two triangles without a common edge lie on top of each other.
+    Stacked,
+    /// Two triangles meet outside their common faces (dimension up to 3, exact).
+    SelfIntersection,
+    /// Two triangles without a common vertex touch (dimension above 3).
+    NearCrossing,
+    /// So many triangles overlap that the pairs were not all looked at.
+    Entangled,
+    /// Points of the input that no part of the mesh is near: a hole.
+    UncoveredPoints,
+    /// Parts of the mesh that no point of the input is near.
+    MeshFarFromPoints,
+    /// The points next to a triangle lie far off its plane.
+    MeshOffPoints,
+    /// Landmarks that were selected and are not in the mesh.
+    UnusedLandmarks,
+    /// A triangle with an angle of nearly zero.
+    NeedleTriangle,
+}
+
+impl ViolationKind {
+    /// The level that finds it.
+    pub fn level(self) -> Level {
+        use ViolationKind::*;
+        match self {
+            Options | Shape | NoTriangles | IndexOutOfRange | RepeatedCorner | RepeatedTriangle
+            | RepeatedCurveEdge | IsolatedVertex | CoincidentVertices => Level::Indices,
+            UndeclaredBoundary | UndeclaredCurve | WrongCount | BoundaryOfClosed | SmallHole => {
+                Level::Edges
+            }
+            InadmissibleLink | SplitLink | Pinch | SpecialPoint => Level::Links,
+            ZeroArea | Fold | CurveFold | Stacked | SelfIntersection | NearCrossing | Entangled => {
+                Level::Geometry
+            }
+            UncoveredPoints | MeshFarFromPoints | MeshOffPoints | UnusedLandmarks => Level::Cover,
+            NeedleTriangle => Level::Quality,
+        }
+    }
+
+    /// What it means, in a few words.
+    pub fn meaning(self) -> &'static str {
+        use ViolationKind::*;
+        match self {
+            Options => "options of the certificate without a meaning",
+            Shape => "numbers of vertices, places and dimensions that do not fit together",
+            NoTriangles => "no triangle at all",
+            IndexOutOfRange => "vertex indices out of range",
+            RepeatedCorner => "triangles or curve edges that name a vertex twice",
+            RepeatedTriangle => "triangles that are there more than once",
+            RepeatedCurveEdge => "curve edges that are there more than once",
+            IsolatedVertex => "vertices without triangle or curve edge",
+            CoincidentVertices => "vertices at the place of another vertex",
+            UndeclaredBoundary => "ordinary edges with one triangle",
+            UndeclaredCurve => "ordinary edges with three or more triangles",
+            WrongCount => "curve edges with another number of triangles than of cells",
+            BoundaryOfClosed => "boundary edges on a closed surface",
+            SmallHole => "boundaries too short to be resolved",
+            InadmissibleLink => "vertices with an inadmissible link",
+            SplitLink => "vertices with an undeclared disconnected link",
+            Pinch => "vertices with an undeclared figure-eight link",
+            SpecialPoint => "declared special points with another link",
+            ZeroArea => "triangles without area",
+            Fold => "ordinary edges with a fold",
+            CurveFold => "curve edges with two triangles on each other",
+            Stacked => "pairs of stacked triangles",
+            SelfIntersection => "pairs of triangles that cross",
+            NearCrossing => "pairs of triangles without a common vertex that touch",
+            Entangled => "triangles that overlap too many others to look at all pairs",
+            UncoveredPoints => "input points far from the mesh",
+            MeshFarFromPoints => "places of the mesh far from every input point",
+            MeshOffPoints => "triangles off the input points next to them",
+            UnusedLandmarks => "landmarks not in the mesh",
+            NeedleTriangle => "triangles with an angle of nearly zero",
+        }
+    }
+
+    /// Which parameter to change.
+    pub fn advice(self) -> &'static str {
+        use ViolationKind::*;
+        match self {
+            Options => "correct the options: lengths and limits are positive and finite",
+            Shape => "give one place a vertex, and points of the same dimension as the mesh",
+            NoTriangles => {
+                "decrease the landmark separation dl, or increase the triangulation radius"
+            }
+            IndexOutOfRange | RepeatedCorner | RepeatedTriangle | RepeatedCurveEdge => {
+                "correct the file or the program that wrote the arrays"
+            }
+            IsolatedVertex => {
+                "increase the triangulation radius, or leave the landmark out of the mesh"
+            }
+            CoincidentVertices => {
+                "remove repeated points, or increase the landmark separation dl on the curves"
+            }
+            UndeclaredBoundary => {
+                "increase the triangulation radius to at least 3 dl, or give the boundary points"
+            }
+            UndeclaredCurve => {
+                "decrease the curve tolerance eps_p or the dimension tolerance dt, so that the \
+                 curve is found as one"
+            }
+            WrongCount => {
+                "increase the triangulation radius, or move the curve tolerance eps_p: cells at \
+                 the curve are incomplete or mixed"
+            }
+            BoundaryOfClosed => {
+                "increase the triangulation radius, or decrease dl; drop the option if the \
+                 surface does have a boundary"
+            }
+            SmallHole => {
+                "increase the triangulation radius to close the hole, or decrease dl to resolve it"
+            }
+            InadmissibleLink | SplitLink | Pinch => {
+                "decrease dl or the neighborhood radius eps, or move the curve tolerance eps_p"
+            }
+            SpecialPoint => "decrease dl around the special point, or do not declare it",
+            ZeroArea | NeedleTriangle => {
+                "increase dl relative to the noise, or remove nearly repeated points"
+            }
+            Fold | CurveFold | Stacked => {
+                "decrease the triangulation radius or dl: a chart folds, or two sheets are closer \
+                 than the landmarks can tell apart"
+            }
+            SelfIntersection | NearCrossing => {
+                "decrease dl, or increase the curve tolerance eps_p: a crossing was not found as \
+                 a double curve"
+            }
+            Entangled => "decrease the triangulation radius: edges are far longer than dl",
+            UncoveredPoints => {
+                "increase the triangulation radius, or remove outliers from the points"
+            }
+            MeshFarFromPoints | MeshOffPoints => {
+                "decrease the triangulation radius or dl: triangles bridge empty space"
+            }
+            UnusedLandmarks => "increase the triangulation radius, or decrease the noise",
+        }
+    }
+}
+
+/// Where it is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Place {
+    /// A vertex of the mesh.
+    Vertex(u32),
+    /// Two vertices.
+    Vertices([u32; 2]),
+    /// An edge by its ends.
+    Edge([u32; 2]),
+    /// A triangle by its place in the list of triangles.
+    Triangle(u32),
+    /// Two triangles by their places in the list of triangles.
+    Triangles([u32; 2]),
+    /// A curve edge by its place in the list of curve edges.
+    CurveEdge(u32),
+    /// A row of the input.
+    Point(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Vertex(v) => write!(f, "vertex {v}"),
+            Self::Vertices([a, b]) => write!(f, "vertices {a} and {b}"),
+            Self::Edge([a, b]) => write!(f, "edge {a}-{b}"),
+            Self::Triangle(t) => write!(f, "triangle {t}"),
+            Self::Triangles([s, t]) => write!(f, "triangles {s} and {t}"),
+            Self::CurveEdge(e) => write!(f, "curve edge number {e}"),
+            Self::Point(p) => write!(f, "point {p}"),
+        }
+    }
+}
+
+/// One kind of violation with all its places.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Violation {
+    /// What is wrong.
+    pub kind: ViolationKind,
+    /// In how many places.
+    pub count: usize,
+    /// The first places, at most [`Violation::PLACES`], in increasing order.
+    pub places: Vec<Place>,
+    /// Coordinates of the first place (of its first vertex), empty when it has none.
+    pub coordinates: Vec<f64>,
+    /// The worst value found, in the unit of `limit`, where the violation is one of degree.
+    pub worst: Option<f64>,
+    /// The limit it broke.
+    pub limit: Option<f64>,
+    /// What was found, where kind and place do not say it.
+    pub detail: String,
+    /// Which parameter to change.
+    pub advice: &'static str,
+}
+
+impl Violation {
+    /// Number of places that are listed.
+    pub const PLACES: usize = 20;
+
+    /// All places of one kind; nothing when there are none. Places are brought into order.
+    pub(super) fn at(
+        kind: ViolationKind,
+        mut places: Vec<Place>,
+        coordinates: impl FnOnce(Place) -> Vec<f64>,
+    ) -> Option<Self> {
+        places.sort_unstable();
+        let count = places.len();
+        let first = *places.first()?;
+        places.truncate(Self::PLACES);
+        Some(Self {
+            kind,
+            count,
+            coordinates: coordinates(first),
+            places,
+            worst: None,
+            limit: None,
+            detail: String::new(),
+            advice: kind.advice(),
+        })
+    }
+
+    /// A violation of the mesh as a whole.
+    pub(super) fn whole(kind: ViolationKind, detail: String) -> Self {
+        Self {
+            kind,
+            count: 1,
+            places: Vec::new(),
+            coordinates: Vec::new(),
+            worst: None,
+            limit: None,
+            detail,
+            advice: kind.advice(),
+        }
+    }
+
+    /// Adds the worst value and the limit.
+    pub(super) fn measured(mut self, worst: f64, limit: f64) -> Self {
+        self.worst = Some(worst);
+        self.limit = Some(limit);
+        self
+    }
+
+    /// Adds what was found.
+    pub(super) fn detailed(mut self, detail: String) -> Self {
+        self.detail = detail;
+        self
+    }
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.count, self.kind.meaning())?;
+        if !self.detail.is_empty() {
+            write!(f, " ({})", self.detail)?;
+        }
+        if let (Some(worst), Some(limit)) = (self.worst, self.limit) {
+            write!(f, ", worst {worst:.4} against a limit of {limit:.4}")?;
+        }
+        if let Some(first) = self.places.first() {
+            write!(f, "; first at {first}")?;
+        }
+        if !self.coordinates.is_empty() {
+            f.write_str(" (")?;
+            for (k, c) in self.coordinates.iter().take(6).enumerate() {
+                write!(f, "{}{c:.4}", if k == 0 { "" } else { ", " })?;
+            }
+            f.write_str(if self.coordinates.len() > 6 {
+                ", ..)"
+            } else {
+                ")"
+            })?;
+        }
+        write!(f, ". To change: {}.", self.advice)
+    }
+}
+
+/// Whether a mesh may be handed over as good.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Every level holds.
+    Verified,
+    /// What is wrong, in the order of the levels.
+    Refused(Vec<Violation>),
+}
+
+impl Verdict {
+    /// Whether the mesh may be handed over as good.
+    pub fn is_verified(&self) -> bool {
+        matches!(self, Self::Verified)
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Verified => f.write_str("verified"),
+            Self::Refused(violations) => {
+                f.write_str("refused")?;
+                for v in violations {
+                    write!(f, "\n  {v}")?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
