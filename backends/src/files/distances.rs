@@ -156,6 +156,9 @@ fn sparse(bytes: &[u8]) -> Parsed<Distances> {
             ));
         }
     };
+    if !archive.has("indptr") && !archive.has("row") {
+        return Err(missing("indptr or row"));
+    }
     let data = archive.array("data")?;
     if data.shape.len() != 1 {
         return Err(Flaw::new(format!("shape {:?}", data.shape), "one dimension").within("data"));
@@ -207,11 +210,9 @@ fn sparse(bytes: &[u8]) -> Parsed<Distances> {
             .flat_map(|(w, row)| (w[0]..w[1]).map(move |_| row))
             .collect();
         (rows, columns)
-    } else if archive.has("row") {
+    } else {
         let rows = index(&mut archive, "row")?;
         (rows, index(&mut archive, "col")?)
-    } else {
-        return Err(missing("indptr or row"));
     };
     if rows.len() != data.len() || columns.len() != data.len() {
         return Err(Flaw::new(

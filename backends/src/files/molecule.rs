@@ -39,6 +39,9 @@ impl Frames {
     }
 
     fn end(&mut self, line: usize) -> Parsed<()> {
+        if self.atoms == 0 {
+            return Ok(());
+        }
         if self.atoms != self.elements.len() {
             return Err(Flaw::line(
                 line,
@@ -46,9 +49,7 @@ impl Frames {
                 format!("{} as in the first", self.elements.len()),
             ));
         }
-        if self.atoms > 0 {
-            self.frames += 1;
-        }
+        self.frames += 1;
         self.atoms = 0;
         Ok(())
     }
@@ -85,7 +86,9 @@ pub(crate) fn parse_xyz(bytes: &[u8]) -> Parsed<Table> {
         let count: usize = first
             .trim()
             .parse()
-            .map_err(|_| Flaw::line(line, excerpt(first), "the number of atoms of a frame"))?;
+            .ok()
+            .filter(|&count| count > 0)
+            .ok_or_else(|| Flaw::line(line, excerpt(first), "the number of atoms of a frame"))?;
         let truncated = |line: usize, atoms: usize| {
             Flaw::line(
                 line,

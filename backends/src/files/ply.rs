@@ -4,7 +4,7 @@
 //! that are there. Written as little-endian binary in double precision, hence lossless.
 
 use super::any_cloud::{AnyCloud, cloud};
-use super::error::{Flaw, Parsed, Place};
+use super::error::{Flaw, Parsed, Place, excerpt};
 use super::mesh::{Parts, Sheet};
 use super::npy::Numbers;
 use crosscap_core::{CurveEdge, PointCloud};
@@ -85,12 +85,22 @@ fn is_corners(name: &str) -> bool {
 }
 
 fn flaw(e: &ParseError) -> Flaw {
-    let message = e.to_string().replace(['\n', '\t'], " ");
-    let shown: String = message.chars().take(160).collect();
-    let flaw = Flaw::new(
-        shown,
-        "a complete polygon file whose header says what follows",
-    );
+    let message = e.to_string();
+    // The line at fault says more than the names of the parser's rules.
+    let row = message.split("String: '").nth(1).map(|row| {
+        let end = row.find(['\'', '\n']).unwrap_or(row.len());
+        excerpt(row[..end].trim())
+    });
+    let flaw = match row {
+        Some(row) => Flaw::new(
+            row,
+            "the finite numbers or the words that the format has here",
+        ),
+        None => Flaw::new(
+            message.replace(['\n', '\t'], " "),
+            "a complete polygon file whose header says what follows",
+        ),
+    };
     match e.line() {
         Some(line) => flaw.at(Place::Line { line, field: None }),
         None => flaw,
@@ -329,11 +339,11 @@ mod tests {
         let text = "ply\nformat ascii 1.0\ncomment c\nelement vertex 2\nproperty float x\n\
                     property float y\nproperty uchar red\nproperty float z\n\
                     element face 0\nproperty list uchar int vertex_indices\nend_header\n\
-                    0.1 2 255 3\n4 5 0 6\n";
+                    0.1 2e+0 255 3\n4 5 0 -6E-05\n";
         let AnyCloud::F32(cloud) = parse_points(text.as_bytes()).unwrap() else {
             panic!("single precision");
         };
-        assert_eq!(cloud.coordinates(), &[0.1, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(cloud.coordinates(), &[0.1, 2.0, 3.0, 4.0, 5.0, -6e-5]);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Tables of numbers in a text: `.csv`, `.txt`, plain `.xyz`.
 //!
 //! The columns are separated by semicolons, commas or white space, whichever the first row shows
-//! (in that order). `#` starts a comment. A first row without any number is a header.
+//! (in that order). `#` starts a comment. A first row of
+//! names, none of which is or begins like a number, is a header.
 
 use super::error::{Flaw, Parsed, excerpt};
 use crosscap_core::{PointCloud, Scalar};
@@ -69,8 +70,14 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Table> {
                 if !more {
                     break;
                 }
-                // The record starts behind blank lines and comments only in its position.
-                let line = record.position().map_or(0, |p| p.line() as usize);
+                // The position of a record is that of the blank lines and comments before it.
+                let (mut line, byte) = record
+                    .position()
+                    .map_or((1, 0), |p| (p.line() as usize, p.byte() as usize));
+                line += text[byte.min(text.len())..]
+                    .lines()
+                    .take_while(|row| row.is_empty() || row.starts_with('#'))
+                    .count();
                 let fields: Vec<&str> = record
                     .iter()
                     .map(|f| f.split('#').next().unwrap_or("").trim())
@@ -108,7 +115,7 @@ fn without_comment(line: &str) -> &str {
 
 impl Table {
     fn row(&mut self, line: usize, fields: &[&str], header_may_come: &mut bool) -> Parsed<()> {
-        if std::mem::take(header_may_come) && fields.iter().all(|f| f.parse::<f64>().is_err()) {
+        if std::mem::take(header_may_come) && fields.iter().all(|f| is_name(f)) {
             return Ok(());
         }
         if self.columns == 0 {
@@ -126,6 +133,12 @@ impl Table {
         }
         Ok(())
     }
+}
+
+/// Whether a field can head a column: no number, and nothing that was meant as one.
+fn is_name(field: &str) -> bool {
+    field.parse::<f64>().is_err()
+        && !field.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
 }
 
 /// Rows of numbers, as few digits as give the same numbers back.

@@ -244,8 +244,8 @@ proptest! {
             return Err(TestCaseError::fail("sparse"));
         };
         prop_assert_eq!(kept.pairs(), n * (n - 1) / 2);
-        for k in 0..n * n {
-            prop_assert_eq!(kept.get((k / n) as u32, (k % n) as u32), Some(d[k]));
+        for (k, &d) in d.iter().enumerate() {
+            prop_assert_eq!(kept.get((k / n) as u32, (k % n) as u32), Some(d));
         }
     }
 }
@@ -347,7 +347,11 @@ fn bad_points_are_refused_with_place_and_expectation() {
             "vertex: found no number z"),
         ("none.ply", b"ply\nformat ascii 1.0\nend_header\n".to_vec(), "found no element vertex"),
         ("nan.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 NaN\n".to_vec(),
-            "vertex, row 0, column 2 (from 0): found NaN"),
+            "line 8: found \"1 2 NaN\", expected the finite numbers"),
+        ("nan-binary.ply", [
+            &b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\nproperty double y\nproperty double z\nend_header\n"[..],
+            &1.0_f64.to_le_bytes(), &f64::NAN.to_le_bytes(), &1.0_f64.to_le_bytes()].concat(),
+            "vertex, row 0, column 1 (from 0): found NaN"),
         ("text.mat", vec![b'x'; 200], "found no MATLAB header"),
         ("nan.mat", mat::tests::file(&[("X", 1, 2, &[1.0, f64::NAN])], true), "row 0, column 1 (from 0): found NaN"),
         ("points.dat", vec![], "found extension .dat, expected one of .npy"),
@@ -543,6 +547,23 @@ fn writers_refuse_what_does_not_fit() {
         points.to_string().contains("found points of R^2"),
         "{points}"
     );
+}
+
+/// Nesting must not cost stack: a parser that recursed would end the process.
+#[test]
+fn deep_nesting_is_survived() {
+    let deep = |open: &str| open.repeat(200_000).into_bytes();
+    for bytes in [deep("<a>"), deep("<VTKFile>"), deep("["), deep("(")] {
+        read_all(&bytes);
+    }
+    let json = npy::bytes(Array1::from(deep("[")).view());
+    let bytes = npz::bytes(&[
+        ("vertices", npy::bytes(Array2::<f64>::zeros((3, 4)).view())),
+        ("triangles", npy::bytes(Array2::<i64>::zeros((0, 3)).view())),
+        ("metadata", json),
+    ]);
+    let flaw = parse_mesh("npz", &bytes).unwrap_err();
+    assert!(flaw.found.contains("bad JSON"), "{flaw:?}");
 }
 
 #[test]

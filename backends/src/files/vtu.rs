@@ -21,6 +21,9 @@ const LINE: i64 = 3;
 /// VTK's number for a triangle.
 const TRIANGLE: i64 = 5;
 
+/// Deepest nesting of elements that is handed to the parser, which recurses; a grid needs 5.
+const DEEPEST: usize = 64;
+
 /// The bytes of the file.
 pub(crate) fn bytes(sheet: &Sheet<'_>) -> Vec<u8> {
     let mesh = sheet.mesh;
@@ -102,6 +105,12 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
     let text = text(bytes)?;
     if text.trim().is_empty() {
         return Err(Flaw::new("an empty file", "an unstructured grid"));
+    }
+    if nesting(text) > DEEPEST {
+        return Err(Flaw::new(
+            format!("elements nested more than {DEEPEST} deep"),
+            "an unstructured grid",
+        ));
     }
     let document = Document::parse(text).map_err(|e| {
         Flaw::line(
@@ -242,6 +251,50 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
     Ok(parts)
 }
 
+/// How deep the elements of a text are nested, up to its first mistake in XML.
+fn nesting(text: &str) -> usize {
+    let (mut depth, mut deepest) = (0_usize, 0);
+    let mut rest = text;
+    while let Some(at) = rest.find('<') {
+        rest = &rest[at..];
+        let end = match rest {
+            r if r.starts_with("<!--") => r[4..].find("-->").map(|i| i + 7),
+            r if r.starts_with("<![CDATA[") => r.find("]]>").map(|i| i + 3),
+            r if r.starts_with("<?") => r.find("?>").map(|i| i + 2),
+            r if r.starts_with("</") => {
+                depth = depth.saturating_sub(1);
+                Some(2)
+            }
+            r => {
+                let mut quote = None;
+                let end = r.bytes().position(|byte| match (quote, byte) {
+                    (None, b'>') => true,
+                    (None, b'"' | b'\'') => {
+                        quote = Some(byte);
+                        false
+                    }
+                    (Some(open), _) if open == byte => {
+                        quote = None;
+                        false
+                    }
+                    _ => false,
+                });
+                depth += 1;
+                deepest = deepest.max(depth);
+                if end.is_some_and(|end| r[..end].ends_with('/')) {
+                    depth -= 1;
+                }
+                end
+            }
+        };
+        match end {
+            Some(end) => rest = &rest[end..],
+            None => break,
+        }
+    }
+    deepest
+}
+
 /// Number of components, and the numbers.
 fn data_array(node: Node<'_, '_>, encoding: &Encoding) -> Parsed<(usize, Numbers)> {
     let components = match node.attribute("NumberOfComponents") {
@@ -325,4 +378,22 @@ fn binary(content: &str, kind: &str, encoding: &Encoding) -> Parsed<Numbers> {
         ));
     }
     npy::decode(kind, encoding.big, data)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nesting_is_counted_as_the_parser_sees_it() {
+        for (text, deepest) in [
+            ("<?xml version=\"1.0\"?><a><b/><b x='/>'/><c></c></a>", 2),
+            ("<a><!-- </a><b><c> --><d e=\">\"><f/></d></a>", 3),
+            ("<a><![CDATA[</a></a>]]><b><c/></b></a>", 3),
+            ("<a><a><a", 3),
+            ("", 0),
+        ] {
+            assert_eq!(nesting(text), deepest, "{text}");
+        }
+    }
 }
