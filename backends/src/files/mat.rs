@@ -13,7 +13,7 @@ use std::io::Read;
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 
-/// Reads the matrix called `name`; without a name the only one there is.
+/// Reads the matrix called `name`; without a name `points`, `vertices`, or the only one there is.
 pub(crate) fn parse(bytes: &[u8], name: Option<&str>) -> Parsed<Array> {
     if bytes.is_empty() {
         return Err(Flaw::new("an empty file", "a MATLAB file of version 5"));
@@ -78,15 +78,19 @@ pub(crate) fn parse(bytes: &[u8], name: Option<&str>) -> Parsed<Array> {
             continue;
         };
         names.push(variable.clone());
-        if let Some(array) = array.filter(|_| found.is_none()) {
+        let better = found
+            .as_ref()
+            .is_none_or(|(best, _)| rank(&variable) < rank(best));
+        if let Some(array) = array.filter(|_| better) {
             found = Some((variable, array));
         }
     }
     match (found, name, names.len()) {
         (Some((_, array)), Some(_), _) | (Some((_, array)), None, 1) => Ok(array),
+        (Some((best, array)), None, _) if rank(&best) < UNKNOWN => Ok(array),
         (Some(_), None, _) => Err(Flaw::new(
             format!("the matrices [{}]", names.join(", ")),
-            "one, or the name of the one to take",
+            "one, or one named points or vertices, or the name of the one to take",
         )),
         (None, Some(name), _) => Err(Flaw::new(
             format!("the matrices [{}]", names.join(", ")),
@@ -97,6 +101,17 @@ pub(crate) fn parse(bytes: &[u8], name: Option<&str>) -> Parsed<Array> {
             "one, with a point a row",
         )),
     }
+}
+
+/// Rank of a name that says nothing.
+const UNKNOWN: usize = 2;
+
+/// How well a name says that the matrix is the points, the best first.
+fn rank(name: &str) -> usize {
+    ["points", "vertices"]
+        .iter()
+        .position(|known| *known == name)
+        .unwrap_or(UNKNOWN)
 }
 
 /// Inflates a compressed element: as many bytes as its first element says, no more.
@@ -324,6 +339,9 @@ pub(crate) mod tests {
             assert_eq!(parse(&bytes, Some("other")).unwrap().shape, [1, 1]);
             assert!(parse(&bytes, None).unwrap_err().found.contains("X, other"));
             assert!(parse(&bytes, Some("Y")).unwrap_err().expected.contains('Y'));
+            let named = [("A", 1, 1, &[1.0][..]), ("vertices", 2, 1, &[1.0, 2.0])];
+            let named = parse(&file(&named, compressed), None).unwrap();
+            assert_eq!(named.shape, [2, 1]);
             let cut = &bytes[..bytes.len() - 9];
             assert!(parse(cut, Some("X")).is_err());
         }

@@ -221,8 +221,9 @@ proptest! {
     #[test]
     fn dense_distances_of_points(cloud in a_cloud(2..4), forth in any::<bool>()) {
         let n = cloud.len();
-        let far = cloud.coordinates().iter().any(|x| x.abs() > 1e100);
-        prop_assume!(!far);
+        // Squares of the largest numbers overflow, which is no matter of files.
+        let near = cloud.coordinates().iter().map(|x| if x.abs() > 1e100 { 1.0 } else { *x }).collect();
+        let cloud = PointCloud::new(cloud.dimension(), near).unwrap();
         let d: Vec<f64> = (0..n * n).map(|k| cloud.squared_distance(k / n, k % n).sqrt()).collect();
         let bytes = npy::bytes(Array2::from_shape_vec((n, n), d.clone()).unwrap().view());
         let Distances::Dense { count, values } = distances::parse("npy", &bytes).unwrap() else {
