@@ -1,0 +1,266 @@
+//! Distances that were measured or computed elsewhere.
+
+use super::error::{FileError, Flaw, Parsed};
+use super::npy;
+use super::npz::Archive;
+use super::whole::{extension, read_bytes};
+use crosscap_core::SparseDistances;
+use std::path::Path;
+
+const EXTENSIONS: &str = ".npy, .npz";
+
+/// Largest difference of the two directions, relative to the largest distance, that passes as
+/// rounding: single precision with room for a sum of a few terms.
+const ROUNDING: f64 = 1e-5;
+
+/// A symmetric matrix of distances.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Distances {
+    /// Every distance.
+    Dense {
+        /// Number of points, n.
+        count: usize,
+        /// n * n distances in row order, symmetric to the bit, 0 on the diagonal.
+        values: Vec<f64>,
+    },
+    /// Some distances; the others are not known.
+    Sparse(SparseDistances<f64>),
+}
+
+impl Distances {
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Dense { count, .. } => *count,
+            Self::Sparse(kept) => kept.len(),
+        }
+    }
+
+    /// Whether there is no point; files without one are refused.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Reads a matrix of distances: dense from `.npy`, sparse from what `scipy.sparse.save_npz`
+/// writes (`csr`, `csc`, `coo`).
+///
+/// Dense: the two directions of a pair may differ by 1e-5 of the largest distance and become
+/// their mean. Sparse: a pair may be there in one direction or in both, which must agree likewise
+/// (the mean is kept); stored zeros are distances, the diagonal must be zero.
+///
+/// # Errors
+/// [`FileError::Extension`]; [`FileError::Content`] with row and column for a distance that is not
+/// finite or negative, a diagonal that is not zero, two directions that differ, a matrix that is
+/// not square, indices out of range or twice; those of reading.
+///
+/// ```
+/// use crosscap_backends::files::{Distances, read_distances, write_points};
+/// use crosscap_core::PointCloud;
+/// let folder = tempfile::tempdir().unwrap();
+/// let path = folder.path().join("distances.npy");
+/// write_points(&path, &PointCloud::new(2, vec![0.0, 3.0, 3.0, 0.0]).unwrap()).unwrap();
+/// let Distances::Dense { count, values } = read_distances(&path).unwrap() else { panic!() };
+/// assert_eq!((count, values[1]), (2, 3.0));
+/// ```
+pub fn read_distances(path: impl AsRef<Path>) -> Result<Distances, FileError> {
+    let path = path.as_ref();
+    let extension = extension(path);
+    if !matches!(extension.as_str(), "npy" | "npz") {
+        return Err(FileError::Extension {
+            path: path.into(),
+            extension,
+            known: EXTENSIONS,
+        });
+    }
+    parse(&extension, &read_bytes(path)?).map_err(|flaw| flaw.of(path))
+}
+
+/// Reads the bytes of a distance file with a known extension.
+pub(crate) fn parse(extension: &str, bytes: &[u8]) -> Parsed<Distances> {
+    if extension == "npy" {
+        dense(bytes)
+    } else {
+        sparse(bytes)
+    }
+}
+
+fn entry(d: f64, row: usize, column: usize) -> Parsed<()> {
+    let flaw = |expected: &str| Err(Flaw::row("", row, Some(column), d.to_string(), expected));
+    if !d.is_finite() || d < 0.0 {
+        return flaw("a finite distance, 0 or more");
+    }
+    if row == column && d != 0.0 {
+        return flaw("0, as the distance of a point to itself");
+    }
+    Ok(())
+}
+
+fn directions(a: f64, b: f64, limit: f64, row: usize, column: usize) -> Parsed<f64> {
+    if (a - b).abs() > limit {
+        return Err(Flaw::row(
+            "",
+            row,
+            Some(column),
+            format!("{a}, and {b} in the other direction"),
+            format!("the same within {limit}"),
+        ));
+    }
+    // Halves first: the sum of two finite numbers need not be finite.
+    Ok(if a == b { a } else { 0.5 * a + 0.5 * b })
+}
+
+fn dense(bytes: &[u8]) -> Parsed<Distances> {
+    let array = npy::parse(bytes)?;
+    let (count, columns) = array.rows_columns()?;
+    if count != columns || count == 0 {
+        return Err(Flaw::new(
+            format!("{count} rows of {columns} columns"),
+            "a square matrix of distances",
+        ));
+    }
+    let mut values = array.numbers.into_f64();
+    for (at, &d) in values.iter().enumerate() {
+        entry(d, at / count, at % count)?;
+    }
+    let limit = ROUNDING * values.iter().fold(0.0_f64, |a, &b| a.max(b));
+    for a in 0..count {
+        for b in 0..a {
+            let mean = directions(values[a * count + b], values[b * count + a], limit, a, b)?;
+            values[a * count + b] = mean;
+            values[b * count + a] = mean;
+        }
+    }
+    Ok(Distances::Dense { count, values })
+}
+
+fn sparse(bytes: &[u8]) -> Parsed<Distances> {
+    let mut archive = Archive::open(bytes)?;
+    let missing = |name: &str| {
+        Flaw::new(
+            format!("no array {name}"),
+            "a sparse matrix in csr, csc or coo form",
+        )
+    };
+    let shape = archive
+        .integers("shape", None)?
+        .ok_or_else(|| missing("shape"))?;
+    let count = match shape[..] {
+        [rows, columns] if rows == columns && (1..=i64::from(u32::MAX)).contains(&rows) => {
+            rows as usize
+        }
+        _ => {
+            return Err(Flaw::new(
+                format!("shape {shape:?}"),
+                "a square matrix of 1 to 4294967295 rows",
+            ));
+        }
+    };
+    if !archive.has("indptr") && !archive.has("row") {
+        return Err(missing("indptr or row"));
+    }
+    let data = archive.array("data")?;
+    if data.shape.len() != 1 {
+        return Err(Flaw::new(format!("shape {:?}", data.shape), "one dimension").within("data"));
+    }
+    let data = data.numbers.into_f64();
+    let index = |archive: &mut Archive<'_>, name: &str| -> Parsed<Vec<u32>> {
+        archive
+            .integers(name, None)?
+            .ok_or_else(|| missing(name))?
+            .into_iter()
+            .enumerate()
+            .map(|(at, i)| {
+                u32::try_from(i)
+                    .ok()
+                    .filter(|&i| (i as usize) < count)
+                    .ok_or_else(|| {
+                        Flaw::row(
+                            name,
+                            at,
+                            None,
+                            i.to_string(),
+                            format!("an index from 0 to {}", count - 1),
+                        )
+                    })
+            })
+            .collect()
+    };
+    let (rows, columns) = if archive.has("indptr") {
+        let columns = index(&mut archive, "indices")?;
+        let starts = archive
+            .integers("indptr", None)?
+            .ok_or_else(|| missing("indptr"))?;
+        let ordered = starts.windows(2).all(|w| w[0] <= w[1]);
+        let ends = (starts.first(), starts.last());
+        // Also bounds the memory: a matrix of n rows has n + 1 starts in the file.
+        if starts.len() != count + 1
+            || !ordered
+            || ends != (Some(&0), Some(&(columns.len() as i64)))
+        {
+            return Err(Flaw::new(
+                format!("{} starts from {:?} to {:?}", starts.len(), ends.0, ends.1),
+                format!("{}, rising from 0 to {}", count + 1, columns.len()),
+            )
+            .within("indptr"));
+        }
+        let rows = starts
+            .windows(2)
+            .zip(0..)
+            .flat_map(|(w, row)| (w[0]..w[1]).map(move |_| row))
+            .collect();
+        (rows, columns)
+    } else {
+        let rows = index(&mut archive, "row")?;
+        (rows, index(&mut archive, "col")?)
+    };
+    if rows.len() != data.len() || columns.len() != data.len() {
+        return Err(Flaw::new(
+            format!(
+                "{} distances at {} rows and {} columns",
+                data.len(),
+                rows.len(),
+                columns.len()
+            ),
+            "as many of each",
+        ));
+    }
+    // The coordinate form has no array as long as the matrix has rows: a shape without entries
+    // would cost memory that the file does not pay for.
+    if count > bytes.len().saturating_mul(16) {
+        return Err(Flaw::new(
+            format!("a matrix of {count} rows with {} distances", data.len()),
+            "distances for most of the rows",
+        ));
+    }
+    let limit = ROUNDING * data.iter().fold(0.0_f64, |a, &b| a.max(b));
+    let mut entries: Vec<(u32, u32, bool, f64)> = Vec::with_capacity(data.len());
+    for ((&a, &b), &d) in rows.iter().zip(&columns).zip(&data) {
+        entry(d, a as usize, b as usize)?;
+        entries.push((a.min(b), a.max(b), a > b, d));
+    }
+    entries.sort_unstable_by_key(|&(a, b, turned, _)| (a, b, turned));
+    let mut pairs = Vec::with_capacity(entries.len());
+    for run in entries.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
+        let (a, b, _, d) = run[0];
+        let d = match run {
+            [_] => d,
+            [first, second] if first.2 != second.2 => {
+                directions(d, second.3, limit, a as usize, b as usize)?
+            }
+            _ => {
+                return Err(Flaw::row(
+                    "",
+                    a as usize,
+                    Some(b as usize),
+                    "more than one distance",
+                    "one: sum or drop duplicates before saving",
+                ));
+            }
+        };
+        pairs.push((a, b, d));
+    }
+    SparseDistances::new(count, pairs)
+        .map(Distances::Sparse)
+        .map_err(|e| Flaw::new(e.to_string(), "a matrix of distances"))
+}
