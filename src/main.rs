@@ -59,6 +59,7 @@ fn main() {
     let roles = |r: Role| an.roles.iter().filter(|&&x| x == r).count();
     eprintln!("analysis {:?} k={:.0} cand {} curve {} boundary {} corner {} unexpl {}", t0.elapsed(), an.mean_neighbors, an.candidates, roles(Role::Curve), roles(Role::Boundary), roles(Role::Corner), an.unexplained.len());
     let st = stratify(&analyzer, &mut an, None, &RandomGreedy::new(), &StratifyOptions { dl, tri_eps: num("--tri-eps").unwrap_or(3.0 * dl), seed: num("--seed").unwrap_or(0.) as u64 }).unwrap();
+    { let mut h = std::collections::BTreeMap::new(); for i in 0..an.roles.len() { if an.roles[i] == Role::Curve { *h.entry((an.radii[i] * 1000.) as i64).or_insert(0) += 1; } } eprintln!("radii {h:?}"); }
     eprintln!("strat {:?} {:?}", t0.elapsed(), st.counts);
     if let Some(f) = get("--dump") {
         let pl: Vec<Vec<f64>> = st.rows.iter().map(|&r| an.places.point(r).to_vec()).collect();
@@ -69,7 +70,7 @@ fn main() {
     for e in &st.waist.curve_edges { for v in e.ends { deg[v as usize] += 1; } }
     for v in 0..st.counts.curve_landmarks { if deg[v] != 2 { eprintln!("curve landmark {v} degree {} at {:?}", deg[v], an.places.point(st.rows[v])); } }
     let large: Box<dyn TriangleRule> = if a.contains(&"--angle".into()) { Box::new(LargestAngle) } else { Box::new(MinimumCircumradius) };
-    let tri = Triangulator { chart: &ClassicalScaling, test: &Lp, rule: large.as_ref(), largest_circumradius: num("--maxr").unwrap_or(4.0) * dl, repair: !a.contains(&"--norepair".into()) };
+    let tri = Triangulator { chart: &ClassicalScaling, test: &crosscap_algorithms::predicate::PlanarPredicate, rule: large.as_ref(), largest_circumradius: num("--maxr").unwrap_or(4.0) * dl, repair: !a.contains(&"--norepair".into()) };
     let out = tri.triangulate(&st.waist).unwrap();
     eprintln!("tri {:?} {:?} incomplete {:?}", t0.elapsed(), out.counts, out.incomplete.len());
     for i in &out.incomplete { eprintln!("  incomplete {} stratum {} at {:?}", i.landmark, st.waist.strata[i.landmark as usize], an.places.point(st.rows[i.landmark as usize])); }

@@ -12,6 +12,9 @@ pub struct LocalPoints<'a> {
     pub dimension: usize,
     /// `count * dimension` coordinates in row order, in the unit of the data.
     pub coordinates: &'a [f64],
+    /// How many leading rows the model is fitted to: the neighborhood. Rows behind them lie
+    /// a little farther out and are only labelled.
+    pub fitted: usize,
     /// Which row is the center of the neighborhood.
     pub center: usize,
     /// Radius of the neighborhood.
@@ -19,7 +22,7 @@ pub struct LocalPoints<'a> {
 }
 
 impl LocalPoints<'_> {
-    /// Number of points.
+    /// Number of points, those that are only labelled included.
     pub fn len(&self) -> usize {
         self.coordinates.len() / self.dimension
     }

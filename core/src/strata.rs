@@ -27,7 +27,7 @@ pub struct Decomposition {
     /// For each curve (in the order of `strata`) the number of cells that meet in it: the
     /// number of triangles that an edge along it must have.
     pub cells_at_curve: Vec<u8>,
-    /// Root mean squared distance of the points to the fitted model, in the unit of the data.
+    /// Root mean squared distance of the fitted points to the model, in the unit of the data.
     pub residual: f64,
     /// Number of free parameters of the fit, what a comparison of models penalizes.
     pub parameters: usize,

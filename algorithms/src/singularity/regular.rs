@@ -15,9 +15,9 @@ impl SingularityModel for OneSheet {
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
-        if local.len() < PATCH_POINTS {
+        if local.fitted < PATCH_POINTS {
             return Err(Rejection::TooFewPoints {
-                found: local.len(),
+                found: local.fitted,
                 needed: PATCH_POINTS,
             });
         }
@@ -26,8 +26,8 @@ impl SingularityModel for OneSheet {
             Vector3::zeros(),
             [Vector3::x(), Vector3::y(), Vector3::z()],
         );
-        patch.fit((0..local.len()).map(place), local.radius);
-        let sum: f64 = (0..local.len())
+        patch.fit((0..local.fitted).map(place), local.radius);
+        let sum: f64 = (0..local.fitted)
             .map(|k| patch.signed_distance(&place(k)).powi(2))
             .sum();
         Ok(Decomposition {
@@ -35,7 +35,7 @@ impl SingularityModel for OneSheet {
             labels: vec![0; local.len()],
             continuations: Vec::new(),
             cells_at_curve: Vec::new(),
-            residual: (sum / local.len() as f64).sqrt(),
+            residual: (sum / local.fitted as f64).sqrt(),
             parameters: 8,
             center: local.point(local.center).to_vec(),
             center_offset: f64::INFINITY,

@@ -254,16 +254,17 @@ impl SingularityModel for TwoPlanes {
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
-        let count = local.len();
+        let count = local.fitted;
         if count < 2 * PATCH_POINTS {
             return Err(Rejection::TooFewPoints {
                 found: count,
                 needed: 2 * PATCH_POINTS,
             });
         }
-        let points: Vec<Vector3<f64>> = (0..count)
+        let all: Vec<Vector3<f64>> = (0..local.len())
             .map(|k| Vector3::from_column_slice(local.point(k)))
             .collect();
+        let points = &all[..count];
         let mut planes = PlanePair::direct(points.iter().copied(), local.radius)?;
         if self.refinement_rounds > 0 {
             planes = planes.refined(points.iter().copied(), self.refinement_rounds).0;
@@ -277,9 +278,9 @@ impl SingularityModel for TwoPlanes {
             start
         };
         let mut sheets = [patch(0), patch(1)];
-        let mut sheet = vec![0u8; count];
+        let mut sheet = vec![0u8; all.len()];
         let assign = |sheets: &[QuadraticPatch; 2], sheet: &mut [u8]| {
-            for (s, x) in sheet.iter_mut().zip(&points) {
+            for (s, x) in sheet.iter_mut().zip(&all) {
                 let d0 = sheets[0].signed_distance(x).abs();
                 let d1 = sheets[1].signed_distance(x).abs();
                 *s = u8::from(d1 < d0);
@@ -299,13 +300,12 @@ impl SingularityModel for TwoPlanes {
                 assign(&sheets, &mut sheet);
             }
         }
-        let mut labels = vec![0u8; count];
+        let mut labels = vec![0u8; all.len()];
         let mut sum = 0.0;
         let mut held = [0usize; 5];
-        for ((label, x), &s) in labels.iter_mut().zip(&points).zip(&sheet) {
+        for (k, ((label, x), &s)) in labels.iter_mut().zip(&all).zip(&sheet).enumerate() {
             let own = sheets[s as usize].signed_distance(x);
             let other = sheets[1 - s as usize].signed_distance(x);
-            sum += own * own;
             // Cells in cyclic order around the curve: 1, 2, 3, 4.
             let cell = match (s, other >= 0.0) {
                 (0, true) => 1,
@@ -318,7 +318,10 @@ impl SingularityModel for TwoPlanes {
             } else {
                 cell
             };
-            held[*label as usize] += 1;
+            if k < count {
+                sum += own * own;
+                held[*label as usize] += 1;
+            }
         }
         let residual = (sum / count as f64).sqrt();
         if residual > self.dp {
@@ -335,7 +338,7 @@ impl SingularityModel for TwoPlanes {
             });
         }
         let reached = meet(&sheets, center, LARGEST_STEP * local.radius)
-            .filter(|x| self.supported(x, &points, &labels, local.radius));
+            .filter(|x| self.supported(x, points, &labels, local.radius));
         let (moved, center_offset) = match reached {
             Some(x) if labels[local.center] == 0 || (x - center).norm() < WITNESS_REACH * self.ep => {
                 (x, (x - center).norm())

@@ -268,12 +268,13 @@ impl<S: Scalar> Analyzer<'_, S> {
     fn explain(&self, i: usize, eps: f64, scratch: &mut Scratch<S>) -> Kind {
         let mut radius = eps;
         for _ in 0..=SHRINKS {
-            let Some((frame, center)) = self.localize(i, radius, scratch) else {
+            let Some((frame, center)) = self.localize(i, radius, radius, scratch) else {
                 break;
             };
             let local = LocalPoints {
                 dimension: 3,
                 coordinates: &scratch.local,
+                fitted: scratch.near.len(),
                 center,
                 radius,
             };
@@ -329,11 +330,18 @@ impl<S: Scalar> Analyzer<'_, S> {
         Kind::Unexplained
     }
 
-    /// Local coordinates of the ball around `i`, into `scratch.local`; the frame and the
-    /// position of the center among the neighbors.
-    fn localize(&self, i: usize, radius: f64, scratch: &mut Scratch<S>) -> Option<(PrincipalFrame, usize)> {
-        self.oracle.within(i, S::of(radius), &mut scratch.near);
-        let frame = PrincipalFrame::of(self.cloud, scratch.near.iter().map(|x| x.index));
+    /// Local coordinates of the ball of radius `reach` around `i`, in the frame of the ball
+    /// of `radius`, into `scratch.local`; the frame and the position of the center among the neighbors.
+    fn localize(
+        &self,
+        i: usize,
+        radius: f64,
+        reach: f64,
+        scratch: &mut Scratch<S>,
+    ) -> Option<(PrincipalFrame, usize)> {
+        self.oracle.within(i, S::of(reach), &mut scratch.near);
+        let fitted = fitted(&scratch.near, radius);
+        let frame = PrincipalFrame::of(self.cloud, scratch.near[..fitted].iter().map(|x| x.index));
         scratch.local.clear();
         for x in &scratch.near {
             frame.project(self.cloud.point(x.index), 3, &mut scratch.local);
@@ -350,10 +358,11 @@ impl<S: Scalar> Analyzer<'_, S> {
         scratch: &mut Scratch<S>,
     ) -> Option<(Decomposition, Vec<usize>)> {
         let radius = analysis.radii[i];
-        let (_, center) = self.localize(i, radius, scratch)?;
+        let (_, center) = self.localize(i, radius, LABEL_MARGIN * radius, scratch)?;
         let local = LocalPoints {
             dimension: 3,
             coordinates: &scratch.local,
+            fitted: fitted(&scratch.near, radius),
             center,
             radius,
         };
@@ -361,6 +370,16 @@ impl<S: Scalar> Analyzer<'_, S> {
         Some((fit, scratch.near.iter().map(|x| x.index).collect()))
     }
 }
+
+/// Number of leading neighbors within `radius`: they come sorted by distance.
+fn fitted<S: Scalar>(near: &[Neighbor<S>], radius: f64) -> usize {
+    let radius = S::of(radius);
+    near.partition_point(|x| x.distance < radius)
+}
+
+/// Points are labelled up to this many radii from a curve point, so that an edge across the
+/// limit of belief finds labels at both ends.
+const LABEL_MARGIN: f64 = 1.4;
 
 /// One sheet is believed when its residual is below this share of the radius.
 const FLAT: f64 = 0.06;

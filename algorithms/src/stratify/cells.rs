@@ -63,8 +63,6 @@ pub(super) fn references<S: Scalar>(
 pub(super) struct CellGraph {
     starts: Vec<usize>,
     targets: Vec<u32>,
-    /// Reference whose labels count at a point, if any.
-    pub(super) nearest: Vec<u32>,
     /// Edges cut.
     pub(super) cut: usize,
 }
@@ -133,7 +131,6 @@ impl CellGraph {
         Self {
             starts,
             targets: edges.into_iter().map(|(_, b)| b).collect(),
-            nearest,
             cut,
         }
     }
@@ -143,7 +140,7 @@ impl CellGraph {
     }
 }
 
-/// Whether the labels put `i` and `j` into different strata.
+/// Whether the labels put `i` and `j` into different strata, or onto the curve itself.
 fn separated(i: usize, j: usize, references: &[Reference], nearest: &[u32], closest: &[f64]) -> bool {
     let mut order = [(closest[i], nearest[i]), (closest[j], nearest[j])];
     if order[1].0 < order[0].0 {
@@ -155,7 +152,7 @@ fn separated(i: usize, j: usize, references: &[Reference], nearest: &[u32], clos
         }
         let reference = &references[k as usize];
         if let (Some(a), Some(b)) = (reference.label(i), reference.label(j)) {
-            return a != b;
+            return a != b || !reference.is_cell(a);
         }
     }
     false
