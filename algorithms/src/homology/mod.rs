@@ -200,9 +200,9 @@ fn regions(triangles: usize, sides: &Sides) -> (usize, Vec<smith::Row>, usize) {
         }
     }
     let mut columns = 0;
-    for t in 0..triangles {
-        if sets.find(t as u32).0 == t as u32 && column_of[t] != OPEN {
-            column_of[t] = columns;
+    for (t, column) in column_of.iter_mut().enumerate() {
+        if sets.find(t as u32).0 == t as u32 && *column != OPEN {
+            *column = columns;
             columns += 1;
         }
     }

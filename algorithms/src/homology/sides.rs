@@ -42,8 +42,8 @@ impl Sides {
         let mut edges = Vec::with_capacity(packed.len() / 2 + 16);
         let mut starts = Vec::with_capacity(packed.len() / 2 + 17);
         let mut from = 0usize;
-        for v in 0..complex.vertices {
-            let to = fill[v] as usize;
+        for (v, &to) in fill[..complex.vertices].iter().enumerate() {
+            let to = to as usize;
             let bucket = &mut packed[from..to];
             bucket.sort_unstable();
             let mut last = None;
@@ -84,7 +84,8 @@ pub(crate) fn runs_backward(side: u32) -> bool {
 /// [`Error::Index`] for a vertex out of range, [`Error::Shape`] for what is out of order,
 /// repeated, or more than can be indexed. O(t).
 pub(crate) fn check_order(complex: &Complex) -> Result<(), Error> {
-    let most = (u32::MAX / 3) as usize;
+    // Sides and corners are counted, and one bit is kept for a sign.
+    let most = (i32::MAX / 3) as usize;
     if complex.triangles.len() > most || complex.vertices > u32::MAX as usize {
         return Err(Error::Shape {
             found: format!(

@@ -246,9 +246,9 @@ pub(crate) fn diagonalize(mut a: Vec<Vec<BigInt>>, result: &mut Invariants) {
             }
             // The column is clear, so column operations touch the pivot row alone.
             let pivot = a[k][k].clone();
-            for j in k + 1..columns {
-                a[k][j] = a[k][j].mod_floor(&pivot);
-                clean &= a[k][j].is_zero();
+            for entry in &mut a[k][k + 1..] {
+                *entry = entry.mod_floor(&pivot);
+                clean &= entry.is_zero();
             }
             if clean {
                 result.insert(pivot.abs().magnitude().clone());

@@ -161,9 +161,8 @@ fn naive_torsion(complex: &Complex) -> Vec<i128> {
         let pivot = a[k][k];
         for i in k + 1..m {
             let q = a[i][k] / pivot;
-            for j in k..n {
-                a[i][j] -= q * a[k][j];
-            }
+            let row = a[k].clone();
+            a[i].iter_mut().zip(&row).for_each(|(x, y)| *x -= q * y);
         }
         for j in k + 1..n {
             let q = a[k][j] / pivot;
@@ -176,10 +175,8 @@ fn naive_torsion(complex: &Complex) -> Vec<i128> {
             continue;
         }
         if let Some(i) = (k + 1..m).find(|&i| a[i][k..].iter().any(|x| x % pivot != 0)) {
-            for j in k..n {
-                let x = a[i][j];
-                a[k][j] += x;
-            }
+            let row = a[i].clone();
+            a[k].iter_mut().zip(&row).for_each(|(x, y)| *x += y);
             continue;
         }
         if pivot.abs() > 1 {
