@@ -12,10 +12,11 @@ pub enum PiecesError {
     Mesh(#[from] Error),
     /// The geometry does not say which triangles continue each other across a double curve.
     #[error(
-        "along {edges} double curve edges from vertex {} to {} it is not clear which triangles continue each \
-         other: the best pairing is straighter than the next by {margin:.2e} (at least {limit:.0e} is needed) and best \
-         on {:.0} % of the length (more than half is needed); the sheets are nearly tangent or the triangles \
-         too coarse: use a smaller landmark separation",
+        "along the {edges} double curve edges that hang together with edge {} {} it is not clear \
+         which triangles continue each other: the best pairing is straighter than the next by \
+         {margin:.1e} (at least {limit:.0e} is needed) and is the best on {:.0} % of the length (more \
+         than half is needed); the sheets are nearly tangent or the triangles too coarse, so use a \
+         smaller landmark separation",
         edge[0], edge[1], 100.0 * agreement
     )]
     Ambiguous {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::homology::homology;
-use crosscap_core::{Complex, PointCloud};
+use crosscap_core::{Complex, PointCloud, squared_distance};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
@@ -131,7 +131,7 @@ fn two_spheres(a: f64, n: usize) -> Mesh {
 
 #[test]
 fn two_spheres_crossing() {
-    for a in [0.1, 0.5, FRAC_PI_4.sin(), 0.95] {
+    for a in [0.1, 0.5, FRAC_PI_4.sin(), 0.95, 0.998] {
         let mesh = two_spheres(a, 6);
         assert_eq!(betti(&mesh), [1, 0, 3]);
         let found = checked(&mesh);
@@ -143,6 +143,19 @@ fn two_spheres_crossing() {
         assert_eq!(curve.pieces(), [0, 1]);
         for p in &curve.preimages {
             assert_eq!((p.covers, p.sidedness), (1, Some(Sidedness::TwoSided)));
+        }
+        // Every piece is one of the given spheres, not a lens or the hull of both.
+        let mut center_of = [None; 2];
+        for (t, corners) in mesh.complex.triangles.iter().enumerate() {
+            let on = |x: f64| {
+                let far =
+                    |v: u32| squared_distance(mesh.vertices.point(v as usize), &[x, 0.0, 0.0]);
+                corners.iter().all(|&v| (far(v) - 1.0).abs() < 1e-9)
+            };
+            assert!(on(a) != on(-a));
+            let center = if on(a) { a } else { -a };
+            let piece = found.triangle_piece[t] as usize;
+            assert_eq!(*center_of[piece].get_or_insert(center), center);
         }
         let radius = (1.0 - a * a).sqrt();
         assert!((curve.length / (TAU * radius) - 1.0).abs() < 0.01);
@@ -247,6 +260,14 @@ fn three_planes_at_a_triple_point() {
     let mesh = weld.mesh();
     let found = checked(&mesh);
     assert_eq!(names(&found), ["disc"; 3]);
+    let mut plane_of = [None; 3];
+    for (t, corners) in mesh.complex.triangles.iter().enumerate() {
+        // The plane of a triangle: the one coordinate that is 0 at all corners.
+        let places = corners.map(|v| mesh.vertices.point(v as usize));
+        let axis = (0..3).find(|&axis| places.iter().all(|p| p[axis] == 0.0));
+        let piece = found.triangle_piece[t] as usize;
+        assert_eq!(*plane_of[piece].get_or_insert(axis), axis);
+    }
     assert_eq!(found.multiple_points.len(), 1);
     let point = found.multiple_points[0];
     assert_eq!(point.sheets, 3);
