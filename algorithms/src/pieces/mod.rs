@@ -1,1 +1,268 @@
 //! What a complex is made of: undoing the immersion and naming the pieces.
+//!
+//! A surface that crosses itself is the image of a surface that does not. [`pieces`] finds it:
+//! 1. Across an edge with two triangles they continue each other.
+//! 2. At an edge with four triangles two sheets cross. Which triangles continue each other is
+//!    decided by a vote: along a *chain* of such edges the same four rims of surface lie beside
+//!    all of them (found by walking around the vertices between them), so one pairing holds for
+//!    the whole chain, the straightest one in the mean over its length. Around a closed chain
+//!    only pairings that return to themselves are considered.
+//! 3. Elsewhere (one triangle, a Y-junction of three, five and more) the surface ends, or is cut.
+//! 4. The corners at a vertex that hang together through glued sides are a local sheet, and
+//!    each local sheet becomes a vertex of its own: two on a double curve, three at a triple point.
+//!
+//! What results is the *normalization*, a surface with boundary, whose components are named by
+//! the classification theorem. Curve marks are not consulted: what counts are triangles.
+//!
+//! Time O(v + t log t), linear memory.
+
+mod curves;
+mod description;
+mod error;
+mod gluing;
+mod normalization;
+mod straightness;
+mod surface;
+
+pub use error::PiecesError;
+pub use straightness::LEAST_MARGIN;
+pub use surface::Surface;
+
+use crosscap_core::{Error, Mesh};
+use gluing::Gluing;
+use normalization::Normalization;
+use serde::Serialize;
+
+/// A connected component of the normalization.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Piece {
+    /// Name of the surface, such as "Klein bottle".
+    pub name: String,
+    /// Which surface it is.
+    pub surface: Surface,
+    /// Euler characteristic.
+    pub euler: i64,
+    /// Number of its vertices; those on double curves count once for each sheet.
+    pub vertices: usize,
+    /// Number of its edges.
+    pub edges: usize,
+    /// Number of its triangles.
+    pub triangles: usize,
+    /// Sum of the areas of its triangles, in the squared unit of the data.
+    pub area: f64,
+}
+
+/// Whether a neighborhood of a circle in a surface is an annulus or a Moebius strip.
+///
+/// For a circle that crosses itself: whether orientation is kept when one goes round it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sidedness {
+    /// A Moebius strip.
+    OneSided,
+    /// An annulus.
+    TwoSided,
+}
+
+/// A component of what lies over a double curve in the normalization.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+pub struct Preimage {
+    /// Index of the piece that it lies on.
+    pub piece: u32,
+    /// Whether it is closed. Over an arc it can be, when it turns back at both ends.
+    pub circle: bool,
+    /// How often it runs along the double curve: 1 or 2.
+    pub covers: u32,
+    /// For a circle, its sides on the piece.
+    pub sidedness: Option<Sidedness>,
+}
+
+/// Why a double curve ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CurveEnd {
+    /// The two sheets are one there: a pinch point, as of Whitney's umbrella.
+    Pinch,
+    /// One of the sheets ends.
+    Boundary,
+    /// Anything else.
+    Singular,
+}
+
+/// Angle at which two sheets cross, in degrees, 0 to 90.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CrossingAngle {
+    /// Mean over the length of the curve.
+    pub mean: f64,
+    /// Least over its edges.
+    pub min: f64,
+    /// Largest over its edges.
+    pub max: f64,
+}
+
+/// A curve in which two sheets cross. It runs straight through triple points.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DoubleCurve {
+    /// Closed, or an arc.
+    pub circle: bool,
+    /// Length, in the unit of the data.
+    pub length: f64,
+    /// Vertices of the mesh along it; the first one is not repeated at the end of a circle.
+    pub vertices: Vec<u32>,
+    /// What lies over it: two components that cover it once, or one that covers it twice; in the
+    /// order of their pieces.
+    pub preimages: Vec<Preimage>,
+    /// For an arc, why it ends: at its first and at its last vertex.
+    pub ends: Option<[CurveEnd; 2]>,
+    /// Crossing angle; `None` when all edges lie beside triangles without area.
+    pub angle: Option<CrossingAngle>,
+    /// Triple points (and points of more sheets) on it, as vertices of the mesh, once for each
+    /// passage.
+    pub multiple_points: Vec<u32>,
+}
+
+impl DoubleCurve {
+    /// The pieces that cross in it: two, or one that crosses itself.
+    pub fn pieces(&self) -> Vec<u32> {
+        let mut pieces: Vec<u32> = self.preimages.iter().map(|p| p.piece).collect();
+        pieces.dedup();
+        pieces
+    }
+}
+
+/// A curve at which the surface is cut because no two sheets cross in it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Junction {
+    /// Closed, or an arc.
+    pub circle: bool,
+    /// How many cells meet in it, 3 or at least 5.
+    pub cells: u32,
+    /// Length, in the unit of the data.
+    pub length: f64,
+    /// Vertices of the mesh along it; the first one is not repeated at the end of a circle.
+    pub vertices: Vec<u32>,
+    /// The pieces that end there, increasing, each once.
+    pub pieces: Vec<u32>,
+}
+
+/// A point where three or more sheets cross along double curves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct MultiplePoint {
+    /// Vertex of the mesh.
+    pub vertex: u32,
+    /// Number of sheets: 3 for a triple point.
+    pub sheets: u32,
+}
+
+/// A vertex in which sheets touch away from all curves, as two surfaces cross in R^4.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct PointContact {
+    /// Vertex of the mesh.
+    pub vertex: u32,
+    /// The piece of each sheet, increasing.
+    pub pieces: Vec<u32>,
+}
+
+/// The pieces of a mesh and how they meet. `Display` says it in a paragraph; serialized is the
+/// summary, without the normalization.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Pieces {
+    /// The pieces, in the order of their first triangles.
+    pub pieces: Vec<Piece>,
+    /// Double curves, arcs first.
+    pub curves: Vec<DoubleCurve>,
+    /// Curves at which the surface was cut.
+    pub junctions: Vec<Junction>,
+    /// Triple points and beyond, by vertex.
+    pub multiple_points: Vec<MultiplePoint>,
+    /// Points in which sheets touch, by vertex.
+    pub contacts: Vec<PointContact>,
+    /// Curve edges that no surface touches.
+    pub bare_edges: usize,
+    /// Vertices that neither a triangle nor a curve edge touches.
+    pub isolated_vertices: usize,
+    /// The surface with its crossings taken apart. Boundary and cut edges are its curve edges;
+    /// bare edges and isolated vertices are in it too, apart from the surface. It is a surface
+    /// with boundary, except over a double or cut edge whose sheets hang together at both ends:
+    /// there it keeps an edge with more triangles, marked with their number.
+    #[serde(skip)]
+    pub normalization: Mesh,
+    /// For each vertex of the normalization the vertex of the mesh over which it lies.
+    #[serde(skip)]
+    pub original_vertex: Vec<u32>,
+    /// For each triangle of the normalization the triangle of the mesh over which it lies.
+    #[serde(skip)]
+    pub original_triangle: Vec<u32>,
+    /// For each triangle of the mesh its piece.
+    #[serde(skip)]
+    pub triangle_piece: Vec<u32>,
+}
+
+/// Takes a mesh apart into surfaces.
+///
+/// See the [module](self) for the method.
+///
+/// # Errors
+/// [`PiecesError::Mesh`] when the mesh is not as [`crosscap_core::Complex::new`] and
+/// [`Mesh::new`] leave it; [`PiecesError::Ambiguous`] and [`PiecesError::Twisted`] when the sheets
+/// at a double curve cannot be told apart.
+///
+/// ```
+/// use crosscap_algorithms::pieces::pieces;
+/// use crosscap_core::{Complex, Mesh, PointCloud};
+/// // Two squares that cross in the edge 0 1.
+/// let places = vec![
+///     0., 0., 0.,  0., 0., 1.,  1., 0., 0.,  -1., 0., 0.,  0., 1., 0.,  0., -1., 0.,
+/// ];
+/// let triangles = vec![[0, 1, 2], [0, 1, 3], [0, 1, 4], [0, 1, 5]];
+/// let complex = Complex::new(6, triangles, vec![]).unwrap();
+/// let mesh = Mesh::new(complex, PointCloud::new(3, places).unwrap(), vec![-1; 6]).unwrap();
+/// let found = pieces(&mesh).unwrap();
+/// assert_eq!(found.triangle_piece, [0, 0, 1, 1]);
+/// assert_eq!(found.to_string(), "Two discs. Disc 1 and disc 2 meet in one arc (crossing angle 90 degrees).");
+/// ```
+pub fn pieces(mesh: &Mesh) -> Result<Pieces, PiecesError> {
+    let count = mesh.complex.vertices;
+    if mesh.vertices.len() != count || mesh.point_index.len() != count {
+        return Err(PiecesError::Mesh(Error::Shape {
+            found: format!(
+                "{} places and {} rows",
+                mesh.vertices.len(),
+                mesh.point_index.len()
+            ),
+            expected: format!("{count} of each, one a vertex"),
+        }));
+    }
+    let gluing = Gluing::new(mesh)?;
+    let normal = Normalization::new(&gluing);
+    let (curves, multiple_points) = curves::double_curves(&gluing, &normal);
+    let junctions = curves::junctions(&gluing, &normal);
+    let contacts = curves::point_contacts(&gluing, &normal);
+    let (normalization, original_triangle) = normal.mesh(&gluing)?;
+    let mut touched = vec![false; normalization.complex.vertices];
+    let corners = normalization.complex.triangles.iter().flatten();
+    let ends = normalization
+        .complex
+        .curve_edges
+        .iter()
+        .flat_map(|e| &e.ends);
+    corners
+        .chain(ends)
+        .for_each(|&v| touched[v as usize] = true);
+    Ok(Pieces {
+        pieces: normal.pieces,
+        curves,
+        junctions,
+        multiple_points,
+        contacts,
+        bare_edges: normal.bare.len(),
+        isolated_vertices: touched.iter().filter(|&&t| !t).count(),
+        normalization,
+        original_vertex: normal.original_vertex,
+        original_triangle,
+        triangle_piece: normal.triangle_piece,
+    })
+}
+
+#[cfg(test)]
+mod tests;
