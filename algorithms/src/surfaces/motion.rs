@@ -28,7 +28,7 @@ pub fn embed(
         });
     }
     let frame = orthonormal_frame(cloud.dimension(), dimension, &mut Random::new(seed));
-    PointCloud::new(dimension, combine(cloud, &frame, &vec![0.0; dimension], 1.0))
+    PointCloud::new(dimension, combine(cloud, &frame, &vec![0.0; dimension]))
 }
 
 /// A rotation (or rotation and reflection) followed by a translation, of R^N.
@@ -61,7 +61,7 @@ impl RigidMotion {
         }
         PointCloud::new(
             cloud.dimension(),
-            combine(cloud, &self.frame, &self.shift, 1.0),
+            combine(cloud, &self.frame, &self.shift),
         )
     }
 }
@@ -75,11 +75,11 @@ pub fn scaled(cloud: &PointCloud<f64>, factor: f64) -> Result<PointCloud<f64>, E
     PointCloud::new(cloud.dimension(), coordinates)
 }
 
-fn combine(cloud: &PointCloud<f64>, frame: &[Vec<f64>], shift: &[f64], scale: f64) -> Vec<f64> {
+fn combine(cloud: &PointCloud<f64>, frame: &[Vec<f64>], shift: &[f64]) -> Vec<f64> {
     let mut out = Vec::with_capacity(cloud.len() * shift.len());
     for p in cloud.iter() {
         for (k, s) in shift.iter().enumerate() {
-            out.push(s + scale * p.iter().zip(frame).map(|(x, axis)| x * axis[k]).sum::<f64>());
+            out.push(s + p.iter().zip(frame).map(|(x, axis)| x * axis[k]).sum::<f64>());
         }
     }
     out
