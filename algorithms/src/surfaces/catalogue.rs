@@ -47,9 +47,9 @@ impl SampleSurface {
         let plain = |s: &str| s.to_ascii_lowercase().replace('-', "_");
         let wanted = plain(name);
         let mut all = catalogue();
-        let at = all.iter().position(|s| {
-            plain(s.name) == wanted || s.aliases.iter().any(|a| plain(a) == wanted)
-        });
+        let at = all
+            .iter()
+            .position(|s| plain(s.name) == wanted || s.aliases.iter().any(|a| plain(a) == wanted));
         match at {
             Some(at) => Ok(all.swap_remove(at)),
             None => Err(Error::Parameter {
@@ -122,7 +122,11 @@ impl SampleSurface {
 
     /// Area of all pieces; curves do not count.
     pub fn area(&self) -> f64 {
-        self.pieces.iter().filter(|p| p.dimension() == 2).map(|p| p.area()).sum()
+        self.pieces
+            .iter()
+            .filter(|p| p.dimension() == 2)
+            .map(|p| p.area())
+            .sum()
     }
 
     /// Distance of every point to the surface, in the unit of the surface.
@@ -160,7 +164,10 @@ impl SampleSurface {
         if !self.rims_are_boundary {
             return Vec::new();
         }
-        self.pieces.iter().flat_map(|p| rim_curves(p.as_ref(), count)).collect()
+        self.pieces
+            .iter()
+            .flat_map(|p| rim_curves(p.as_ref(), count))
+            .collect()
     }
 
     /// The places where three sheets cross.
@@ -243,11 +250,7 @@ const fn kind(name: &'static str, orientable: bool, euler: i64, boundaries: usiz
 }
 
 /// Truth of a surface without torsion or singular strata.
-const fn plain(
-    betti: [usize; 3],
-    pieces: &'static [PieceTruth],
-    boundary_curves: usize,
-) -> Truth {
+const fn plain(betti: [usize; 3], pieces: &'static [PieceTruth], boundary_curves: usize) -> Truth {
     Truth {
         betti,
         betti_mod_2: betti,
@@ -288,7 +291,6 @@ const UNPRINTED: PaperExample = PaperExample {
 };
 
 /// An example in which the paper takes every point as 2-dimensional.
-#[allow(clippy::too_many_arguments, reason = "one row of the paper's table")]
 const fn manifold(
     count: usize,
     epsilon: f64,
@@ -372,7 +374,15 @@ fn paper_surfaces() -> Vec<SampleSurface> {
             0,
         )
         .also(&["klein_fig8_r5", "klein_embedded"])
-        .paper_example(manifold(10_000, 1.0, 0.25, 1940, 33, [1, 1, 0], [3.8, 778.0])),
+        .paper_example(manifold(
+            10_000,
+            1.0,
+            0.25,
+            1940,
+            33,
+            [1, 1, 0],
+            [3.8, 778.0],
+        )),
         SampleSurface::new(
             "rp2_r6",
             "the real projective plane embedded in R^6",
@@ -385,7 +395,15 @@ fn paper_surfaces() -> Vec<SampleSurface> {
             0,
         )
         .also(&["rp2", "projective_plane"])
-        .paper_example(manifold(100_000, 0.35, 0.1, 753, 35, [1, 0, 0], [11.7, 302.0])),
+        .paper_example(manifold(
+            100_000,
+            0.35,
+            0.1,
+            753,
+            35,
+            [1, 0, 0],
+            [11.7, 302.0],
+        )),
         SampleSurface::new(
             "two_spheres",
             "two unit spheres that cross at a right angle",

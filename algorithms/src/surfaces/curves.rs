@@ -12,7 +12,11 @@ pub(super) fn curve(
     count: usize,
     at: impl Fn(f64) -> Vec<f64>,
 ) -> TrueCurve {
-    let steps = if closed { count } else { count.saturating_sub(1).max(1) };
+    let steps = if closed {
+        count
+    } else {
+        count.saturating_sub(1).max(1)
+    };
     let places: Vec<Vec<f64>> = (0..count).map(|k| at(k as f64 / steps as f64)).collect();
     let dimension = places.first().map_or(3, Vec::len);
     TrueCurve {
@@ -45,7 +49,9 @@ pub(super) fn circle_of_spheres(
 
 pub(super) fn klein_circle(count: usize) -> Vec<TrueCurve> {
     let piece = KleinFigureEight::immersed();
-    vec![curve(CurveKind::Double, true, count, |t| place_at(&piece, [TAU * t, 0.0]))]
+    vec![curve(CurveKind::Double, true, count, |t| {
+        place_at(&piece, [TAU * t, 0.0])
+    })]
 }
 
 pub(super) fn henneberg_arcs(count: usize) -> Vec<TrueCurve> {
@@ -65,7 +71,9 @@ pub(super) fn roman_segments(count: usize) -> Vec<TrueCurve> {
     (0..3)
         .map(|axis| {
             curve(CurveKind::Double, false, count, |t| {
-                (0..3).map(|k| if k == axis { t - 0.5 } else { 0.0 }).collect()
+                (0..3)
+                    .map(|k| if k == axis { t - 0.5 } else { 0.0 })
+                    .collect()
             })
         })
         .collect()
@@ -230,10 +238,17 @@ impl RimWalk {
 
     /// Parameters at an arc length from the start.
     pub(super) fn parameters(&self, length: f64) -> [f64; 2] {
-        let k = self.knots.partition_point(|knot| knot.0 <= length).saturating_sub(1);
+        let k = self
+            .knots
+            .partition_point(|knot| knot.0 <= length)
+            .saturating_sub(1);
         let (start, from, to) = self.knots[k];
         let end = self.knots.get(k + 1).map_or(self.length, |knot| knot.0);
-        let share = if end > start { ((length - start) / (end - start)).clamp(0.0, 1.0) } else { 0.0 };
+        let share = if end > start {
+            ((length - start) / (end - start)).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
         [0, 1].map(|a| from[a] + share * (to[a] - from[a]))
     }
 }

@@ -65,7 +65,9 @@ impl Piece for Rectangle {
         for (side, length) in self.half_sides.iter().zip(self.lengths()) {
             let along: f64 = rest.iter().zip(side).map(|(r, s)| r * s).sum();
             let clamped = (along / (length * length)).clamp(-1.0, 1.0);
-            rest.iter_mut().zip(side).for_each(|(r, s)| *r -= clamped * s);
+            rest.iter_mut()
+                .zip(side)
+                .for_each(|(r, s)| *r -= clamped * s);
         }
         Some(rest.iter().map(|r| r * r).sum::<f64>().sqrt())
     }
@@ -166,7 +168,9 @@ impl Piece for Segment {
     }
     fn closed_form_distance(&self, place: &[f64]) -> Option<f64> {
         let (a, b) = (&self.ends[0], &self.ends[1]);
-        let along: f64 = (0..a.len()).map(|k| (place[k] - a[k]) * (b[k] - a[k])).sum();
+        let along: f64 = (0..a.len())
+            .map(|k| (place[k] - a[k]) * (b[k] - a[k]))
+            .sum();
         let t = (along / crosscap_core::squared_distance(a, b)).clamp(0.0, 1.0);
         let square: f64 = (0..a.len())
             .map(|k| (place[k] - a[k] - t * (b[k] - a[k])).powi(2))

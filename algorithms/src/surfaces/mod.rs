@@ -1,4 +1,23 @@
 //! Sample surfaces with known truth.
+//!
+//! A test of a reconstruction is worth what is known about its input. Here every surface comes with its
+//! topology ([`Truth`]), its pieces, the distance of any place to it, its double curves and its boundary, and
+//! for the paper's nine with the paper's parameters and results ([`PaperExample`]).
+//!
+//! | idea | item |
+//! | --- | --- |
+//! | the catalogue, and one surface of it | [`catalogue`], [`SampleSurface`] |
+//! | how to draw, and what was drawn | [`Sampling`], [`Sample`] |
+//! | a parametrized piece; bring your own | [`Piece`] |
+//! | a formula with its derivatives | [`Jet`] |
+//! | minimal spacing | [`thin`](fn@thin), [`thin_randomly`] |
+//! | rigid motion, scaling, isometric embedding | [`RigidMotion`], [`scaled`], [`embed`] |
+//! | conformations of cyclo-octane | [`RingConformations`] |
+//!
+//! Points are uniform by area unless asked otherwise: a piece proposes parameters and accepts them in
+//! proportion to its area element, below a bound derived by hand (for Boy's surface and the
+//! two-holed torus: measured on a grid, with a margin, and tested). Random numbers are ChaCha8 and elementary functions
+//! those of `libm`, so a seed gives the same cloud on every platform.
 
 mod catalogue;
 mod curves;

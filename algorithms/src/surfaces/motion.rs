@@ -24,7 +24,10 @@ pub fn embed(
         return Err(Error::Parameter {
             name: "dimension",
             value: dimension.to_string(),
-            expected: format!("at least {}, the dimension of the points", cloud.dimension()),
+            expected: format!(
+                "at least {}, the dimension of the points",
+                cloud.dimension()
+            ),
         });
     }
     let frame = orthonormal_frame(cloud.dimension(), dimension, &mut Random::new(seed));
@@ -59,10 +62,7 @@ impl RigidMotion {
                 expected: format!("points of R^{}", self.shift.len()),
             });
         }
-        PointCloud::new(
-            cloud.dimension(),
-            combine(cloud, &self.frame, &self.shift),
-        )
+        PointCloud::new(cloud.dimension(), combine(cloud, &self.frame, &self.shift))
     }
 }
 
@@ -79,7 +79,13 @@ fn combine(cloud: &PointCloud<f64>, frame: &[Vec<f64>], shift: &[f64]) -> Vec<f6
     let mut out = Vec::with_capacity(cloud.len() * shift.len());
     for p in cloud.iter() {
         for (k, s) in shift.iter().enumerate() {
-            out.push(s + p.iter().zip(frame).map(|(x, axis)| x * axis[k]).sum::<f64>());
+            out.push(
+                s + p
+                    .iter()
+                    .zip(frame)
+                    .map(|(x, axis)| x * axis[k])
+                    .sum::<f64>(),
+            );
         }
     }
     out
@@ -94,7 +100,9 @@ fn orthonormal_frame(count: usize, dimension: usize, random: &mut Random) -> Vec
         for _ in 0..2 {
             for other in &frame {
                 let along: f64 = axis.iter().zip(other).map(|(a, b)| a * b).sum();
-                axis.iter_mut().zip(other).for_each(|(a, b)| *a -= along * b);
+                axis.iter_mut()
+                    .zip(other)
+                    .for_each(|(a, b)| *a -= along * b);
             }
             let length = axis.iter().map(|a| a * a).sum::<f64>().sqrt();
             axis.iter_mut().for_each(|a| *a /= length);

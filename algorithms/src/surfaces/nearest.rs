@@ -22,7 +22,10 @@ pub(super) fn nearest_distances<P: Piece + ?Sized>(piece: &P, cloud: &PointCloud
     let mut grid = Vec::with_capacity(side * side * n);
     for i in 0..side {
         for j in 0..side {
-            piece.map([parameter(0, i), parameter(1, j)].map(Jet::constant), &mut place);
+            piece.map(
+                [parameter(0, i), parameter(1, j)].map(Jet::constant),
+                &mut place,
+            );
             grid.extend(place.iter().map(|x| x.value));
         }
     }
@@ -72,7 +75,8 @@ fn descend<P: Piece + ?Sized>(
         // A step out of the domain is no descent: that parameter stays where it is.
         let blocked: [bool; 2] = std::array::from_fn(|k| {
             let push = [p, q][k];
-            ends[k] && ((at[k] <= domain[k][0] && push < 0.0) || (at[k] >= domain[k][1] && push > 0.0))
+            ends[k]
+                && ((at[k] <= domain[k][0] && push < 0.0) || (at[k] >= domain[k][1] && push > 0.0))
         });
         let mut cross = f;
         if blocked[0] {
@@ -95,7 +99,11 @@ fn descend<P: Piece + ?Sized>(
             }
         }
         piece.map(next.map(Jet::constant), place);
-        let new: f64 = place.iter().zip(target).map(|(x, t)| (x.value - t).powi(2)).sum();
+        let new: f64 = place
+            .iter()
+            .zip(target)
+            .map(|(x, t)| (x.value - t).powi(2))
+            .sum();
         if new < best {
             let gain = best - new;
             (at, best, damping) = (next, new, damping * 0.2);

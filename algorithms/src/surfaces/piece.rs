@@ -106,7 +106,11 @@ pub trait Piece: Send + Sync {
             let at = match law {
                 SamplingLaw::Area => {
                     let (at, acceptance) = self.propose(random, &mut place);
-                    debug_assert!(acceptance <= 1.0 + 1e-12, "{}: {acceptance} at {at:?}", self.name());
+                    debug_assert!(
+                        acceptance <= 1.0 + 1e-12,
+                        "{}: {acceptance} at {at:?}",
+                        self.name()
+                    );
                     if acceptance < 1.0 && random.uniform() >= acceptance {
                         continue;
                     }
@@ -161,7 +165,10 @@ fn quadrature_nodes([low, high]: [f64; 2]) -> Vec<(f64, f64)> {
         .flat_map(|panel| {
             let middle = low + (2 * panel + 1) as f64 * half;
             NODES.into_iter().flat_map(move |(node, weight)| {
-                [(middle - half * node, half * weight), (middle + half * node, half * weight)]
+                [
+                    (middle - half * node, half * weight),
+                    (middle + half * node, half * weight),
+                ]
             })
         })
         .collect()

@@ -173,7 +173,10 @@ mod tests {
                 largest = largest.max(area_element(&place));
             }
         }
-        assert!(largest * 1.1 < BOY_BOUND && largest * 1.2 > BOY_BOUND, "{largest}");
+        assert!(
+            largest * 1.1 < BOY_BOUND && largest * 1.2 > BOY_BOUND,
+            "{largest}"
+        );
     }
 
     #[test]

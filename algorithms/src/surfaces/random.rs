@@ -100,7 +100,10 @@ mod tests {
     fn words_are_those_of_chacha8() {
         // First words of the ChaCha8 key stream for the all-zero key and nonce (eSTREAM test vectors).
         let mut random = Random::new(0);
-        assert_eq!(random.words.next_u32().to_le_bytes(), [0x3e, 0x00, 0xef, 0x2f]);
+        assert_eq!(
+            random.words.next_u32().to_le_bytes(),
+            [0x3e, 0x00, 0xef, 0x2f]
+        );
     }
 
     #[test]
@@ -115,7 +118,9 @@ mod tests {
             }
         }
         for (found, (expected, tolerance)) in
-            moments.iter().zip([(0.0, 0.01), (1.0, 0.015), (0.0, 0.04), (3.0, 0.11)])
+            moments
+                .iter()
+                .zip([(0.0, 0.01), (1.0, 0.015), (0.0, 0.04), (3.0, 0.11)])
         {
             assert!((found - expected).abs() < tolerance, "{moments:?}");
         }
@@ -128,12 +133,18 @@ mod tests {
         for _ in 0..60_000 {
             count[random.below(6)] += 1;
         }
-        assert!(count.iter().all(|&c| (9_600..10_400).contains(&c)), "{count:?}");
+        assert!(
+            count.iter().all(|&c| (9_600..10_400).contains(&c)),
+            "{count:?}"
+        );
         assert_eq!(random.below(0), 0);
     }
 
     #[test]
     fn streams_differ() {
-        assert_ne!(Random::stream(1, 0).uniform(), Random::stream(1, 1).uniform());
+        assert_ne!(
+            Random::stream(1, 0).uniform(),
+            Random::stream(1, 1).uniform()
+        );
     }
 }

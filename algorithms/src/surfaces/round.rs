@@ -8,7 +8,9 @@ pub(super) fn frame_about(axis: [f64; 3]) -> [[f64; 3]; 3] {
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     let z = axis.map(|x| x / length);
     // The coordinate axis that is farthest from z gives the best conditioned first vector.
-    let k = (0..3).min_by(|&a, &b| z[a].abs().total_cmp(&z[b].abs())).unwrap_or(0);
+    let k = (0..3)
+        .min_by(|&a, &b| z[a].abs().total_cmp(&z[b].abs()))
+        .unwrap_or(0);
     let mut x: [f64; 3] = std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 } - z[k] * z[i]);
     let length = x.iter().map(|a| a * a).sum::<f64>().sqrt();
     x = x.map(|a| a / length);
@@ -177,7 +179,12 @@ impl Piece for Torus {
     fn map(&self, [about_axis, about_tube]: [Jet; 2], place: &mut [Jet]) {
         let ((s, c), (st, ct)) = (about_axis.sin_cos(), about_tube.sin_cos());
         let reach = ct * self.tube + self.radius;
-        compose(&self.frame, self.center, [reach * c, reach * s, st * self.tube], place);
+        compose(
+            &self.frame,
+            self.center,
+            [reach * c, reach * s, st * self.tube],
+            place,
+        );
     }
     fn area_element_bound(&self) -> f64 {
         self.tube * (self.radius + self.tube)
@@ -202,12 +209,7 @@ pub struct Ring {
 
 impl Ring {
     /// The ring between two `radii` (inner, outer) about `center`, in the plane of two orthonormal `axes`.
-    pub fn new(
-        name: &'static str,
-        center: Vec<f64>,
-        axes: [Vec<f64>; 2],
-        radii: [f64; 2],
-    ) -> Self {
+    pub fn new(name: &'static str, center: Vec<f64>, axes: [Vec<f64>; 2], radii: [f64; 2]) -> Self {
         Self {
             name,
             center,
@@ -246,7 +248,10 @@ impl Piece for Ring {
     /// The squared distance from the center is uniform.
     fn propose(&self, random: &mut Random, place: &mut [Jet]) -> ([f64; 2], f64) {
         let [inner, outer] = self.radii.map(|r| r * r);
-        let at = [random.between(inner, outer).sqrt(), random.between(0.0, TAU)];
+        let at = [
+            random.between(inner, outer).sqrt(),
+            random.between(0.0, TAU),
+        ];
         self.map(at.map(Jet::constant), place);
         (at, 1.0)
     }
@@ -262,7 +267,9 @@ impl Piece for Ring {
         let mut within = [0.0; 2];
         for (along, axis) in within.iter_mut().zip(&self.axes) {
             *along = rest.iter().zip(axis).map(|(r, a)| r * a).sum();
-            rest.iter_mut().zip(axis).for_each(|(r, a)| *r -= *along * a);
+            rest.iter_mut()
+                .zip(axis)
+                .for_each(|(r, a)| *r -= *along * a);
         }
         let off = rest.iter().map(|r| r * r).sum::<f64>().sqrt();
         let distance = libm::hypot(within[0], within[1]);
@@ -326,6 +333,9 @@ impl Piece for Cylinder {
     }
     fn closed_form_distance(&self, place: &[f64]) -> Option<f64> {
         let beyond = place[2] - place[2].clamp(-self.half_height, self.half_height);
-        Some(libm::hypot(libm::hypot(place[0], place[1]) - self.radius, beyond))
+        Some(libm::hypot(
+            libm::hypot(place[0], place[1]) - self.radius,
+            beyond,
+        ))
     }
 }

@@ -106,13 +106,16 @@ pub(super) fn draw(surface: &SampleSurface, sampling: &Sampling) -> Result<Sampl
     if sampling.boundary && surface.has_boundary() {
         let spacing = 0.9 * (surface.area() / rows.len() as f64).sqrt();
         let mut coordinates = points.coordinates().to_vec();
-        for (k, piece) in pieces.iter().enumerate().filter(|(_, p)| p.dimension() == 2) {
+        for (k, piece) in pieces
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p.dimension() == 2)
+        {
             for rim in piece.rims() {
                 let walk = RimWalk::new(piece.as_ref(), &rim);
                 let count = ((walk.length() / spacing).round() as usize).max(3);
                 for step in 0..count {
-                    let parameters =
-                        walk.parameters(walk.length() * step as f64 / count as f64);
+                    let parameters = walk.parameters(walk.length() * step as f64 / count as f64);
                     coordinates.extend(place_at(piece.as_ref(), parameters));
                     rows.push(Row {
                         piece: k as u32,
@@ -150,9 +153,16 @@ fn allot(surface: &SampleSurface, sampling: &Sampling) -> Vec<usize> {
     let pieces = surface.pieces();
     let mut counts = vec![0; pieces.len()];
     let mut areas: Vec<f64> = pieces.iter().map(|p| p.area()).collect();
-    let total: f64 = (0..areas.len()).filter(|&k| pieces[k].dimension() == 2).map(|k| areas[k]).sum();
+    let total: f64 = (0..areas.len())
+        .filter(|&k| pieces[k].dimension() == 2)
+        .map(|k| areas[k])
+        .sum();
     let mut rest = sampling.count;
-    for (k, piece) in pieces.iter().enumerate().filter(|(_, p)| p.dimension() == 1) {
+    for (k, piece) in pieces
+        .iter()
+        .enumerate()
+        .filter(|(_, p)| p.dimension() == 1)
+    {
         debug_assert_eq!(piece.dimension(), 1);
         let per_length = (sampling.count as f64 / total).sqrt();
         counts[k] = ((areas[k] * per_length).round() as usize).min(rest);

@@ -23,7 +23,10 @@ fn names_are_unique_and_found() {
     names.sort_unstable();
     names.dedup();
     assert_eq!(names.len(), count);
-    assert_eq!(SampleSurface::find("Two-Spheres").unwrap().name(), "two_spheres");
+    assert_eq!(
+        SampleSurface::find("Two-Spheres").unwrap().name(),
+        "two_spheres"
+    );
     let error = SampleSurface::find("dodecahedron").err().unwrap();
     assert!(error.is_input() && error.to_string().contains("henneberg"));
 }
@@ -38,7 +41,12 @@ fn truth_is_consistent() {
         let rims: usize = s.pieces().iter().map(|p| p.rims().len()).sum();
         let boundaries: usize = t.pieces.iter().map(|p| p.boundaries).sum();
         assert_eq!(rims, boundaries, "{}", s.name());
-        assert_eq!(s.boundary_curves(10).len(), t.boundary_curves, "{}", s.name());
+        assert_eq!(
+            s.boundary_curves(10).len(),
+            t.boundary_curves,
+            "{}",
+            s.name()
+        );
         assert_eq!(s.triple_points().len(), t.triple_points, "{}", s.name());
         if let Some(curves) = s.singular_curves(10) {
             let of = |kind| curves.iter().filter(|c| c.kind == kind).count();
@@ -95,7 +103,12 @@ fn samples_lie_on_the_surface() {
                     assert!((x - y).abs() < 1e-9, "{}", s.name());
                 }
             }
-            assert_eq!(sample.boundary.is_empty(), !s.has_boundary(), "{}", s.name());
+            assert_eq!(
+                sample.boundary.is_empty(),
+                !s.has_boundary(),
+                "{}",
+                s.name()
+            );
             assert_eq!(sample.points.len(), 400 + sample.boundary.len());
         }
     }
@@ -118,7 +131,8 @@ fn distances_off_the_surface_agree_with_a_dense_sample() {
             // The nearest sample is at most a few spacings aside of the nearest place.
             let beside = 5.0 * spacing;
             assert!(
-                found <= nearest + 1e-9 && nearest * nearest <= found * found * 1.5 + 2.0 * beside * beside,
+                found <= nearest + 1e-9
+                    && nearest * nearest <= found * found * 1.5 + 2.0 * beside * beside,
                 "{}: {found} against {nearest}, spacing {spacing}",
                 s.name()
             );
@@ -139,29 +153,43 @@ fn samples_are_uniform_by_area() {
             let domain = s.pieces()[k as usize].domain();
             let bin = |a: usize| {
                 let [low, high] = domain[a];
-                if high > low { (((at[a] - low) / (high - low) * BINS as f64) as usize).min(BINS - 1) } else { 0 }
+                if high > low {
+                    (((at[a] - low) / (high - low) * BINS as f64) as usize).min(BINS - 1)
+                } else {
+                    0
+                }
             };
             found[k as usize][bin(0)][bin(1)] += 1.0;
         }
         let mut chi_square = 0.0;
         let mut bins = 0.0;
         let mut place = vec![Jet::default(); s.ambient_dimension()];
-        for (piece, found) in s.pieces().iter().zip(&found).filter(|(p, _)| p.dimension() == 2) {
+        for (piece, found) in s
+            .pieces()
+            .iter()
+            .zip(&found)
+            .filter(|(p, _)| p.dimension() == 2)
+        {
             let [[a, b], [c, d]] = piece.domain();
             let cell = (b - a) * (d - c) / ((BINS * FINE) as f64).powi(2);
             for (i, row) in found.iter().enumerate() {
                 for (j, &found) in row.iter().enumerate() {
                     let mut area = 0.0;
                     for k in 0..FINE * FINE {
-                        let u = a + (b - a) * ((i * FINE + k / FINE) as f64 + 0.5) / (BINS * FINE) as f64;
-                        let v = c + (d - c) * ((j * FINE + k % FINE) as f64 + 0.5) / (BINS * FINE) as f64;
+                        let u = a
+                            + (b - a) * ((i * FINE + k / FINE) as f64 + 0.5) / (BINS * FINE) as f64;
+                        let v = c
+                            + (d - c) * ((j * FINE + k % FINE) as f64 + 0.5) / (BINS * FINE) as f64;
                         if piece.holds([u, v]) {
                             piece.map([Jet::first(u), Jet::second(v)], &mut place);
                             area += cell * area_element(&place);
                         }
                     }
-                    let segment = sample.pieces.iter()
-                        .filter(|&&k| s.pieces()[k as usize].dimension() == 1).count();
+                    let segment = sample
+                        .pieces
+                        .iter()
+                        .filter(|&&k| s.pieces()[k as usize].dimension() == 1)
+                        .count();
                     let expected = (count - segment) as f64 * area / s.area();
                     if expected > 5.0 {
                         chi_square += (found - expected).powi(2) / expected;
@@ -173,21 +201,38 @@ fn samples_are_uniform_by_area() {
             }
         }
         // Mean bins, variance 2 bins: four standard deviations.
-        assert!(chi_square < bins + 4.0 * (2.0f64 * bins).sqrt(), "{}: {chi_square} in {bins}", s.name());
+        assert!(
+            chi_square < bins + 4.0 * (2.0f64 * bins).sqrt(),
+            "{}: {chi_square} in {bins}",
+            s.name()
+        );
     }
 }
 
 #[test]
 fn singular_curves_lie_on_both_sheets() {
     for s in catalogue() {
-        let Some(curves) = s.singular_curves(50) else { continue };
+        let Some(curves) = s.singular_curves(50) else {
+            continue;
+        };
         for curve in curves {
-            let sheets = if curve.kind == CurveKind::Junction { 3 } else { 2 };
-            let distances: Vec<Vec<f64>> =
-                s.pieces().iter().map(|p| p.distances(&curve.points)).collect();
+            let sheets = if curve.kind == CurveKind::Junction {
+                3
+            } else {
+                2
+            };
+            let distances: Vec<Vec<f64>> = s
+                .pieces()
+                .iter()
+                .map(|p| p.distances(&curve.points))
+                .collect();
             for k in 0..curve.points.len() {
                 let touched = distances.iter().filter(|d| d[k] < 1e-9).count();
-                assert!(touched >= if s.pieces().len() > 1 { sheets } else { 1 }, "{}", s.name());
+                assert!(
+                    touched >= if s.pieces().len() > 1 { sheets } else { 1 },
+                    "{}",
+                    s.name()
+                );
             }
         }
     }
@@ -212,7 +257,11 @@ fn assert_same_place_other_tangent(piece: &dyn Piece, a: [f64; 2], b: [f64; 2]) 
         (p.map(|j| j.value), n.map(|x| x / length))
     };
     let ((p, m), (q, n)) = (normal(a), normal(b));
-    assert!((0..3).all(|k| (p[k] - q[k]).abs() < 1e-9), "{} {a:?} {b:?}", piece.name());
+    assert!(
+        (0..3).all(|k| (p[k] - q[k]).abs() < 1e-9),
+        "{} {a:?} {b:?}",
+        piece.name()
+    );
     let cosine: f64 = (0..3).map(|k| m[k] * n[k]).sum();
     assert!(cosine.abs() < 0.99, "{} {a:?} {b:?}", piece.name());
 }
@@ -222,7 +271,11 @@ fn triple_points_lie_on_three_sheets() {
     let s = SampleSurface::find("three_spheres").unwrap();
     for p in s.triple_points() {
         let place = PointCloud::new(3, p.clone()).unwrap();
-        assert!(s.pieces().iter().all(|piece| piece.distances(&place)[0] < 1e-12));
+        assert!(
+            s.pieces()
+                .iter()
+                .all(|piece| piece.distances(&place)[0] < 1e-12)
+        );
     }
 }
 
@@ -243,13 +296,23 @@ fn boundary_points_have_the_density_of_the_rest() {
         }
         let expected = length / (0.9 * (s.area() / count as f64).sqrt());
         let found = sample.boundary.len() as f64;
-        assert!((found - expected).abs() < 3.0, "{}: {found} {expected}", s.name());
+        assert!(
+            (found - expected).abs() < 3.0,
+            "{}: {found} {expected}",
+            s.name()
+        );
         let rims = sample.points.select(&sample.boundary);
-        let truth: Vec<f64> = s.boundary_curves(2000).iter().flat_map(|c| c.points.coordinates().to_vec()).collect();
+        let truth: Vec<f64> = s
+            .boundary_curves(2000)
+            .iter()
+            .flat_map(|c| c.points.coordinates().to_vec())
+            .collect();
         let truth = PointCloud::new(s.ambient_dimension(), truth).unwrap();
         let step = length / 2000.0;
         for p in rims.iter() {
-            let near = truth.iter().any(|q| crosscap_core::squared_distance(p, q) < step * step);
+            let near = truth
+                .iter()
+                .any(|q| crosscap_core::squared_distance(p, q) < step * step);
             assert!(near, "{}", s.name());
         }
     }
@@ -257,12 +320,21 @@ fn boundary_points_have_the_density_of_the_rest() {
 
 #[test]
 fn same_seed_same_points() {
-    for name in ["sphere", "double_torus", "klein_immersion", "moebius", "line_disc"] {
+    for name in [
+        "sphere",
+        "double_torus",
+        "klein_immersion",
+        "moebius",
+        "line_disc",
+    ] {
         let s = SampleSurface::find(name).unwrap();
         let mut sampling = Sampling::new(300, 9);
         (sampling.boundary, sampling.noise, sampling.thinning) = (true, 0.01, Some(0.02));
         assert_eq!(s.sample(&sampling).unwrap(), s.sample(&sampling).unwrap());
-        let other = Sampling { seed: 10, ..sampling };
+        let other = Sampling {
+            seed: 10,
+            ..sampling
+        };
         assert_ne!(s.sample(&sampling).unwrap(), s.sample(&other).unwrap());
     }
 }
@@ -271,20 +343,42 @@ fn same_seed_same_points() {
 #[test]
 fn thinned_counts_are_those_of_the_paper() {
     for s in catalogue() {
-        let Some(count) = s.paper().and_then(|p| p.count_after_thinning) else { continue };
-        let found = s.sample(&Sampling { boundary: false, ..s.default_sampling(1) }).unwrap().points.len();
+        let Some(count) = s.paper().and_then(|p| p.count_after_thinning) else {
+            continue;
+        };
+        let found = s
+            .sample(&Sampling {
+                boundary: false,
+                ..s.default_sampling(1)
+            })
+            .unwrap()
+            .points
+            .len();
         let share = found as f64 / count as f64;
         // Henneberg's printed number is above what 100,000 points can give, by area or by parameters:
         // greedy thinning reaches it from about 400,000.
-        let range = if s.name() == "henneberg" { 0.85..0.95 } else { 0.95..1.05 };
-        assert!(range.contains(&share), "{}: {found} against {count}", s.name());
+        let range = if s.name() == "henneberg" {
+            0.85..0.95
+        } else {
+            0.95..1.05
+        };
+        assert!(
+            range.contains(&share),
+            "{}: {found} against {count}",
+            s.name()
+        );
     }
 }
 
 #[test]
 fn noise_has_the_deviation_asked_for() {
     let s = SampleSurface::find("square").unwrap();
-    let sample = s.sample(&Sampling { noise: 0.05, ..Sampling::new(20_000, 4) }).unwrap();
+    let sample = s
+        .sample(&Sampling {
+            noise: 0.05,
+            ..Sampling::new(20_000, 4)
+        })
+        .unwrap();
     let square: f64 = sample.points.iter().map(|p| p[2] * p[2]).sum::<f64>() / 20_000.0;
     assert!((square.sqrt() - 0.05).abs() < 0.001);
 }
@@ -295,14 +389,29 @@ fn refuses_parameters_without_meaning() {
     let good = Sampling::new(10, 0);
     for bad in [
         Sampling { count: 0, ..good },
-        Sampling { noise: -1.0, ..good },
-        Sampling { noise: f64::NAN, ..good },
-        Sampling { thinning: Some(0.0), ..good },
-        Sampling { thinning: Some(f64::NAN), ..good },
+        Sampling {
+            noise: -1.0,
+            ..good
+        },
+        Sampling {
+            noise: f64::NAN,
+            ..good
+        },
+        Sampling {
+            thinning: Some(0.0),
+            ..good
+        },
+        Sampling {
+            thinning: Some(f64::NAN),
+            ..good
+        },
     ] {
         assert!(s.sample(&bad).unwrap_err().is_input(), "{bad:?}");
     }
-    assert!(s.distances(&PointCloud::new(2, vec![0.0; 2]).unwrap()).is_err());
+    assert!(
+        s.distances(&PointCloud::new(2, vec![0.0; 2]).unwrap())
+            .is_err()
+    );
 }
 
 /// Alexander duality: a compact set in space has as many independent 2-cycles as its complement has
@@ -321,7 +430,11 @@ fn enclosed_regions_are_as_many_as_the_second_betti_number() {
     ] {
         let s = SampleSurface::find(name).unwrap();
         let points = s.sample(&Sampling::new(count, 3)).unwrap().points;
-        assert_eq!(bounded_components(&points, side), s.truth().betti[2], "{name}");
+        assert_eq!(
+            bounded_components(&points, side),
+            s.truth().betti[2],
+            "{name}"
+        );
     }
 }
 
@@ -355,7 +468,10 @@ fn bounded_components(points: &PointCloud<f64>, side: usize) -> usize {
                 for next in [
                     (place[k] > 0).then(|| at - stride),
                     (place[k] + 1 < side).then(|| at + stride),
-                ].into_iter().flatten() {
+                ]
+                .into_iter()
+                .flatten()
+                {
                     if !full[next] {
                         full[next] = true;
                         stack.push(next);

@@ -142,7 +142,11 @@ fn shadow(cloud: &PointCloud<f64>) -> Vec<[f64; 3]> {
         .map(|p| {
             std::array::from_fn(|k| {
                 let axis = eigen.eigenvectors.column(order[k]);
-                p.iter().zip(&mean).zip(axis.iter()).map(|((x, m), a)| (x - m) * a).sum()
+                p.iter()
+                    .zip(&mean)
+                    .zip(axis.iter())
+                    .map(|((x, m), a)| (x - m) * a)
+                    .sum()
             })
         })
         .collect()
@@ -156,7 +160,10 @@ mod tests {
     fn brute(cloud: &PointCloud<f64>, spacing: f64) -> Vec<usize> {
         let mut kept: Vec<usize> = Vec::new();
         for i in 0..cloud.len() {
-            if kept.iter().all(|&k| cloud.squared_distance(i, k) >= spacing * spacing) {
+            if kept
+                .iter()
+                .all(|&k| cloud.squared_distance(i, k) >= spacing * spacing)
+            {
                 kept.push(i);
             }
         }

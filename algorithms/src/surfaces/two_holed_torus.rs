@@ -30,7 +30,10 @@ impl TwoHoledTorus {
             let across = around - CORE;
             let reach = libm::hypot(across, place[2]);
             let (radial, up) = (across / reach, place[2] / reach);
-            (reach - TUBE, [radial * x / around, radial * place[1] / around, up])
+            (
+                reach - TUBE,
+                [radial * x / around, radial * place[1] / around, up],
+            )
         };
         let ((a, da), (b, db)) = (torus(1.0), torus(-1.0));
         // Shifted by the smaller one, the exponentials neither overflow nor both vanish.
@@ -86,7 +89,11 @@ impl TwoHoledTorus {
     fn ray(parameters: [f64; 2]) -> (f64, [f64; 3], [f64; 3]) {
         let side = if parameters[0] < TAU { 1.0 } else { -1.0 };
         let ((s, c), (sv, cv)) = (libm::sincos(parameters[0]), libm::sincos(parameters[1]));
-        (side, [OFFSET + CORE * c, CORE * s, 0.0], [cv * c, cv * s, sv])
+        (
+            side,
+            [OFFSET + CORE * c, CORE * s, 0.0],
+            [cv * c, cv * s, sv],
+        )
     }
 }
 
@@ -151,6 +158,11 @@ impl Piece for TwoHoledTorus {
             for _ in 0..20 {
                 let (level, gradient) = Self::level(at);
                 let square: f64 = gradient.iter().map(|g| g * g).sum();
+                if square < 1e-12 {
+                    // On an axis or a core circle: no direction is better than another.
+                    at = [at[0] + 1e-3, at[1] + 2e-3, at[2] + 3e-3];
+                    continue;
+                }
                 normal = gradient.map(|g| g / square.sqrt());
                 at = std::array::from_fn(|k| at[k] - level * gradient[k] / square);
                 if level.abs() < 1e-14 {
@@ -185,7 +197,10 @@ mod tests {
         let (mut sum, mut largest) = (0.0, 0.0f64);
         for i in 0..rows {
             for j in 0..columns {
-                let at = [TAU * (i as f64 + 0.5) / rows as f64, TAU * (j as f64 + 0.5) / columns as f64];
+                let at = [
+                    TAU * (i as f64 + 0.5) / rows as f64,
+                    TAU * (j as f64 + 0.5) / columns as f64,
+                ];
                 if TwoHoledTorus.holds(at) {
                     TwoHoledTorus.map([Jet::first(at[0]), Jet::second(at[1])], &mut place);
                     let element = area_element(&place);
@@ -208,6 +223,19 @@ mod tests {
             down[k] -= h;
             let slope = (TwoHoledTorus::level(up).0 - TwoHoledTorus::level(down).0) / (2.0 * h);
             assert!((slope - gradient[k]).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn distance_where_the_gradient_vanishes_is_a_number() {
+        for at in [
+            [0.0; 3],
+            [OFFSET, 0.0, 0.0],
+            [OFFSET + CORE, 0.0, 0.0],
+            [-OFFSET, CORE, 0.0],
+        ] {
+            let found = TwoHoledTorus.closed_form_distance(&at).unwrap();
+            assert!(found.is_finite() && found > 0.2, "{at:?} {found}");
         }
     }
 
