@@ -59,7 +59,9 @@ impl Piece for Henneberg {
         // The metric is conformal with factor 2 |1 - z^-4| (1 + r^2), z = r e^(it); the element
         // 4 r (1 + r^2)^2 |1 - z^-4|^2 is largest at the inner rim, where z^4 < 0.
         let r = RANGE[0];
-        4.0 * r * ((1.0 + r * r) * (1.0 + r.powi(-4))).powi(2) * (1.0 + 1e-12)
+        let square = r * r;
+        let factor = (1.0 + square) * (1.0 + 1.0 / (square * square));
+        4.0 * r * factor * factor * (1.0 + 1e-12)
     }
     fn rims(&self) -> Vec<Vec<RimSegment>> {
         RANGE.map(|r| rim_at_first(r, [0.0, TAU])).into()

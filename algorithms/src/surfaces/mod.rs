@@ -17,7 +17,7 @@
 //! Points are uniform by area unless asked otherwise: a piece proposes parameters and accepts them in
 //! proportion to its area element, below a bound derived by hand (for Boy's surface and the
 //! two-holed torus: measured on a grid, with a margin, and tested). Random numbers are ChaCha8 and elementary functions
-//! those of `libm`, so a seed gives the same cloud on every platform.
+//! those of `libm`, so a seed gives the same cloud on every platform (conformations: on one).
 
 mod catalogue;
 mod curves;
