@@ -1,0 +1,180 @@
+//! Pieces without curvature: rectangles, the Swiss roll, segments.
+
+use super::{Jet, Piece, RimSegment};
+
+fn rectangle_rim([[a, b], [c, d]]: [[f64; 2]; 2]) -> Vec<RimSegment> {
+    let corners = [[a, c], [b, c], [b, d], [a, d]];
+    (0..4)
+        .map(|k| RimSegment {
+            from: corners[k],
+            to: corners[(k + 1) % 4],
+        })
+        .collect()
+}
+
+/// A rectangle in R^N, center plus u times one half side plus v times the other, |u|, |v| <= 1.
+#[derive(Clone, Debug)]
+pub struct Rectangle {
+    name: &'static str,
+    center: Vec<f64>,
+    half_sides: [Vec<f64>; 2],
+}
+
+impl Rectangle {
+    /// A rectangle with two orthogonal half sides.
+    pub fn new(name: &'static str, center: Vec<f64>, half_sides: [Vec<f64>; 2]) -> Self {
+        Self {
+            name,
+            center,
+            half_sides,
+        }
+    }
+
+    fn lengths(&self) -> [f64; 2] {
+        [0, 1].map(|k| self.half_sides[k].iter().map(|x| x * x).sum::<f64>().sqrt())
+    }
+}
+
+impl Piece for Rectangle {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+    fn ambient_dimension(&self) -> usize {
+        self.center.len()
+    }
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[-1.0, 1.0]; 2]
+    }
+    fn ends(&self) -> [bool; 2] {
+        [true; 2]
+    }
+    fn map(&self, [u, v]: [Jet; 2], place: &mut [Jet]) {
+        for (k, out) in place.iter_mut().enumerate() {
+            *out = u * self.half_sides[0][k] + v * self.half_sides[1][k] + self.center[k];
+        }
+    }
+    fn area_element_bound(&self) -> f64 {
+        let [a, b] = self.lengths();
+        a * b * (1.0 + 1e-12)
+    }
+    fn rims(&self) -> Vec<Vec<RimSegment>> {
+        vec![rectangle_rim(self.domain())]
+    }
+    fn closed_form_distance(&self, place: &[f64]) -> Option<f64> {
+        let mut rest: Vec<f64> = place.iter().zip(&self.center).map(|(x, c)| x - c).collect();
+        for (side, length) in self.half_sides.iter().zip(self.lengths()) {
+            let along: f64 = rest.iter().zip(side).map(|(r, s)| r * s).sum();
+            let clamped = (along / (length * length)).clamp(-1.0, 1.0);
+            rest.iter_mut()
+                .zip(side)
+                .for_each(|(r, s)| *r -= clamped * s);
+        }
+        Some(rest.iter().map(|r| r * r).sum::<f64>().sqrt())
+    }
+}
+
+/// The Swiss roll: a strip wound along the spiral of Archimedes, (t cos t, y, t sin t) times a scale.
+/// Parameters: t, y.
+#[derive(Clone, Debug)]
+pub struct SwissRoll {
+    scale: f64,
+    turns: [f64; 2],
+    half_width: f64,
+}
+
+impl SwissRoll {
+    /// The roll with angles in `turns` (radians) and widths |y| <= `half_width` before scaling.
+    pub fn new(scale: f64, turns: [f64; 2], half_width: f64) -> Self {
+        Self {
+            scale,
+            turns,
+            half_width,
+        }
+    }
+}
+
+impl Piece for SwissRoll {
+    fn name(&self) -> &'static str {
+        "roll"
+    }
+    fn ambient_dimension(&self) -> usize {
+        3
+    }
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [self.turns, [-self.half_width, self.half_width]]
+    }
+    fn ends(&self) -> [bool; 2] {
+        [true; 2]
+    }
+    fn map(&self, [t, y]: [Jet; 2], place: &mut [Jet]) {
+        let (s, c) = t.sin_cos();
+        place.copy_from_slice(&[t * c * self.scale, y * self.scale, t * s * self.scale]);
+    }
+    fn area_element_bound(&self) -> f64 {
+        // scale^2 sqrt(1 + t^2), largest at the outer end.
+        let t = self.turns[1].abs().max(self.turns[0].abs());
+        self.scale * self.scale * (1.0 + t * t).sqrt() * (1.0 + 1e-12)
+    }
+    fn rims(&self) -> Vec<Vec<RimSegment>> {
+        vec![rectangle_rim(self.domain())]
+    }
+}
+
+/// A straight segment of R^N: a piece of dimension 1. First parameter: 0 at one end, 1 at the other.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    name: &'static str,
+    ends: [Vec<f64>; 2],
+}
+
+impl Segment {
+    /// The segment between two places.
+    pub fn new(name: &'static str, ends: [Vec<f64>; 2]) -> Self {
+        Self { name, ends }
+    }
+}
+
+impl Piece for Segment {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+    fn ambient_dimension(&self) -> usize {
+        self.ends[0].len()
+    }
+    fn dimension(&self) -> u8 {
+        1
+    }
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[0.0, 1.0], [0.0, 0.0]]
+    }
+    fn ends(&self) -> [bool; 2] {
+        [true; 2]
+    }
+    fn map(&self, [t, _]: [Jet; 2], place: &mut [Jet]) {
+        for (k, out) in place.iter_mut().enumerate() {
+            *out = t * (self.ends[1][k] - self.ends[0][k]) + self.ends[0][k];
+        }
+    }
+    fn area_element_bound(&self) -> f64 {
+        self.area()
+    }
+    fn area(&self) -> f64 {
+        crosscap_core::squared_distance(&self.ends[0], &self.ends[1]).sqrt()
+    }
+    fn propose(&self, random: &mut super::Random, place: &mut [Jet]) -> ([f64; 2], f64) {
+        let at = [random.uniform(), 0.0];
+        self.map(at.map(Jet::constant), place);
+        (at, 1.0)
+    }
+    fn closed_form_distance(&self, place: &[f64]) -> Option<f64> {
+        let (a, b) = (&self.ends[0], &self.ends[1]);
+        let along: f64 = (0..a.len())
+            .map(|k| (place[k] - a[k]) * (b[k] - a[k]))
+            .sum();
+        let t = (along / crosscap_core::squared_distance(a, b)).clamp(0.0, 1.0);
+        let square: f64 = (0..a.len())
+            .map(|k| (place[k] - a[k] - t * (b[k] - a[k])).powi(2))
+            .sum();
+        Some(square.sqrt())
+    }
+}

@@ -1,0 +1,121 @@
+//! Distance to a parametrized patch without a closed form.
+
+use super::{Jet, Piece, first_fundamental_form};
+use crosscap_core::{PointCloud, squared_distance};
+
+/// Grid cells along each parameter. The patches of this module bend by less than a quarter turn
+/// within two cells, so every nearest place has a grid minimum in its basin.
+const CELLS: usize = 80;
+
+/// Distance of every point to `piece`: from each local minimum of the distance over a grid of
+/// parameters, Levenberg-Marquardt steps held inside the domain where the patch ends.
+/// O(cells^2) a point.
+pub(super) fn nearest_distances<P: Piece + ?Sized>(piece: &P, cloud: &PointCloud<f64>) -> Vec<f64> {
+    let n = piece.ambient_dimension();
+    let domain = piece.domain();
+    let side = CELLS + 1;
+    let parameter = |axis: usize, k: usize| {
+        let [low, high] = domain[axis];
+        low + (high - low) * k as f64 / CELLS as f64
+    };
+    let mut place = vec![Jet::default(); n];
+    let mut grid = Vec::with_capacity(side * side * n);
+    for i in 0..side {
+        for j in 0..side {
+            piece.map(
+                [parameter(0, i), parameter(1, j)].map(Jet::constant),
+                &mut place,
+            );
+            grid.extend(place.iter().map(|x| x.value));
+        }
+    }
+    let mut squares = vec![0.0; side * side];
+    cloud
+        .iter()
+        .map(|p| {
+            for (square, g) in squares.iter_mut().zip(grid.chunks_exact(n)) {
+                *square = squared_distance(p, g);
+            }
+            let mut best = f64::INFINITY;
+            for i in 0..side {
+                for j in 0..side {
+                    let here = squares[i * side + j];
+                    let lowest = (i.saturating_sub(1)..=(i + 1).min(CELLS)).all(|a| {
+                        (j.saturating_sub(1)..=(j + 1).min(CELLS))
+                            .all(|b| squares[a * side + b] >= here)
+                    });
+                    if lowest {
+                        let start = [parameter(0, i), parameter(1, j)];
+                        best = best.min(descend(piece, p, start, here, &mut place));
+                    }
+                }
+            }
+            best.sqrt()
+        })
+        .collect()
+}
+
+/// Squared distance at the local minimum that `start` leads to.
+fn descend<P: Piece + ?Sized>(
+    piece: &P,
+    target: &[f64],
+    start: [f64; 2],
+    square: f64,
+    place: &mut [Jet],
+) -> f64 {
+    let (domain, ends) = (piece.domain(), piece.ends());
+    let (mut at, mut best, mut damping) = (start, square, 1e-4);
+    for _ in 0..60 {
+        piece.map([Jet::first(at[0]), Jet::second(at[1])], place);
+        let [e, f, g] = first_fundamental_form(place);
+        let [mut p, mut q] = place.iter().zip(target).fold([0.0; 2], |[p, q], (x, t)| {
+            let r = t - x.value;
+            [p + x.by_first * r, q + x.by_second * r]
+        });
+        // A step out of the domain is no descent: that parameter stays where it is.
+        let blocked: [bool; 2] = std::array::from_fn(|k| {
+            let push = [p, q][k];
+            ends[k]
+                && ((at[k] <= domain[k][0] && push < 0.0) || (at[k] >= domain[k][1] && push > 0.0))
+        });
+        let mut cross = f;
+        if blocked[0] {
+            (p, cross) = (0.0, 0.0);
+        }
+        if blocked[1] {
+            (q, cross) = (0.0, 0.0);
+        }
+        // Floors keep the system regular where a parameter has no effect (poles, curves).
+        let floor = 1e-12 * (e + g) + f64::MIN_POSITIVE;
+        let (a, b) = (e * (1.0 + damping) + floor, g * (1.0 + damping) + floor);
+        let determinant = a * b - cross * cross;
+        let mut next = [
+            at[0] + (b * p - cross * q) / determinant,
+            at[1] + (a * q - cross * p) / determinant,
+        ];
+        for k in 0..2 {
+            if ends[k] {
+                next[k] = next[k].clamp(domain[k][0], domain[k][1]);
+            }
+        }
+        piece.map(next.map(Jet::constant), place);
+        let new: f64 = place
+            .iter()
+            .zip(target)
+            .map(|(x, t)| (x.value - t).powi(2))
+            .sum();
+        if new < best {
+            let gain = best - new;
+            (at, best, damping) = (next, new, damping * 0.2);
+            if gain <= 1e-15 * best || best < 1e-28 {
+                break;
+            }
+        } else {
+            damping *= 8.0;
+            if damping > 1e8 {
+                break;
+            }
+        }
+    }
+    best
+}

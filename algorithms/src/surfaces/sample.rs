@@ -1,0 +1,185 @@
+//! Drawing a cloud from a sample surface.
+
+use super::curves::RimWalk;
+use super::{Random, SampleSurface, SamplingLaw, place_at, thin};
+use crosscap_core::{Error, PointCloud};
+
+/// How to draw a sample. Same surface, same values, same points, on every platform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Number of points drawn, before thinning.
+    pub count: usize,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// How points are spread.
+    pub law: SamplingLaw,
+    /// Minimal spacing to thin the points to, in the unit of the surface.
+    pub thinning: Option<f64>,
+    /// Whether to add points exactly on the boundary, where there is one, at the density of the
+    /// rest: one each 0.9 sqrt(area / count after thinning) of arc length.
+    pub boundary: bool,
+    /// Standard deviation of normal noise added to every coordinate, 0 for none.
+    pub noise: f64,
+}
+
+impl Sampling {
+    /// `count` points, uniform by area, without noise, thinning or added boundary points.
+    pub fn new(count: usize, seed: u64) -> Self {
+        Self {
+            count,
+            seed,
+            law: SamplingLaw::Area,
+            thinning: None,
+            boundary: false,
+            noise: 0.0,
+        }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        if self.count == 0 {
+            return Err(Error::Parameter {
+                name: "count",
+                value: "0".into(),
+                expected: "at least 1 point".into(),
+            });
+        }
+        if !(self.noise >= 0.0 && self.noise.is_finite()) {
+            return Err(Error::Parameter {
+                name: "noise",
+                value: self.noise.to_string(),
+                expected: "a finite number that is not negative".into(),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// A cloud with what is known about every point. Rows are in random order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    /// The points.
+    pub points: PointCloud<f64>,
+    /// For each point its parameters on its piece (see the piece for what they mean).
+    pub parameters: Vec<[f64; 2]>,
+    /// For each point the piece it was drawn from, an index into [`super::Truth::pieces`].
+    pub pieces: Vec<u32>,
+    /// Rows that were put exactly on the boundary, increasing.
+    pub boundary: Vec<usize>,
+}
+
+struct Row {
+    piece: u32,
+    parameters: [f64; 2],
+    boundary: bool,
+}
+
+pub(super) fn draw(surface: &SampleSurface, sampling: &Sampling) -> Result<Sample, Error> {
+    sampling.check()?;
+    let dimension = surface.ambient_dimension();
+    let pieces = surface.pieces();
+    let counts = allot(surface, sampling);
+    let mut rows: Vec<Row> = Vec::with_capacity(sampling.count);
+    let mut coordinates = Vec::with_capacity(sampling.count * dimension);
+    for (k, (piece, &count)) in pieces.iter().zip(&counts).enumerate() {
+        let mut random = Random::stream(sampling.seed, 2 + k as u64);
+        let drawn = piece.draw(count, sampling.law, &mut random);
+        coordinates.extend(drawn.coordinates);
+        rows.extend(drawn.parameters.into_iter().map(|parameters| Row {
+            piece: k as u32,
+            parameters,
+            boundary: false,
+        }));
+    }
+    let mut random = Random::stream(sampling.seed, 1);
+    let mut points = PointCloud::new(dimension, coordinates)?;
+    let mut order = random.permutation(rows.len());
+    if let Some(spacing) = sampling.thinning {
+        points = points.select(&order);
+        let kept = thin(&points, spacing)?;
+        order = kept.iter().map(|&k| order[k]).collect();
+        points = points.select(&kept);
+    } else {
+        points = points.select(&order);
+    }
+    let mut places: Vec<Option<Row>> = rows.into_iter().map(Some).collect();
+    let mut rows: Vec<Row> = order.iter().filter_map(|&k| places[k].take()).collect();
+    if sampling.boundary && surface.has_boundary() {
+        let spacing = 0.9 * (surface.area() / rows.len() as f64).sqrt();
+        let mut coordinates = points.coordinates().to_vec();
+        for (k, piece) in pieces
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p.dimension() == 2)
+        {
+            for rim in piece.rims() {
+                let walk = RimWalk::new(piece.as_ref(), &rim);
+                let count = ((walk.length() / spacing).round() as usize).max(3);
+                for step in 0..count {
+                    let parameters = walk.parameters(walk.length() * step as f64 / count as f64);
+                    coordinates.extend(place_at(piece.as_ref(), parameters));
+                    rows.push(Row {
+                        piece: k as u32,
+                        parameters,
+                        boundary: true,
+                    });
+                }
+            }
+        }
+        points = PointCloud::new(dimension, coordinates)?;
+        let order = random.permutation(rows.len());
+        points = points.select(&order);
+        let mut places: Vec<Option<Row>> = rows.into_iter().map(Some).collect();
+        rows = order.iter().filter_map(|&k| places[k].take()).collect();
+    }
+    if sampling.noise > 0.0 {
+        let moved = points
+            .coordinates()
+            .iter()
+            .map(|x| x + sampling.noise * random.normal())
+            .collect();
+        points = PointCloud::new(dimension, moved)?;
+    }
+    Ok(Sample {
+        points,
+        boundary: (0..rows.len()).filter(|&k| rows[k].boundary).collect(),
+        parameters: rows.iter().map(|r| r.parameters).collect(),
+        pieces: rows.iter().map(|r| r.piece).collect(),
+    })
+}
+
+/// How many points each piece gets: curves as many as the mean spacing of the surface asks for, and the
+/// rest at random by area.
+fn allot(surface: &SampleSurface, sampling: &Sampling) -> Vec<usize> {
+    let pieces = surface.pieces();
+    let mut counts = vec![0; pieces.len()];
+    let mut areas: Vec<f64> = pieces.iter().map(|p| p.area()).collect();
+    let total: f64 = (0..areas.len())
+        .filter(|&k| pieces[k].dimension() == 2)
+        .map(|k| areas[k])
+        .sum();
+    let mut rest = sampling.count;
+    for (k, piece) in pieces
+        .iter()
+        .enumerate()
+        .filter(|(_, p)| p.dimension() == 1)
+    {
+        debug_assert_eq!(piece.dimension(), 1);
+        let per_length = (sampling.count as f64 / total).sqrt();
+        counts[k] = ((areas[k] * per_length).round() as usize).min(rest);
+        rest -= counts[k];
+        areas[k] = 0.0;
+    }
+    let mut random = Random::stream(sampling.seed, 0);
+    for _ in 0..rest {
+        let mut mark = random.uniform() * total;
+        let k = areas
+            .iter()
+            .position(|&area| {
+                mark -= area;
+                mark < 0.0
+            })
+            .unwrap_or(areas.len() - 1);
+        counts[k] += 1;
+    }
+    counts
+}

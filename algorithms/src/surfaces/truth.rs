@@ -1,0 +1,99 @@
+//! What is known about a sample surface beforehand.
+
+use crosscap_core::PointCloud;
+
+/// What a piece is, as an abstract surface before it is immersed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PieceTruth {
+    /// Its usual name.
+    pub name: &'static str,
+    /// Whether it has two sides to tell apart.
+    pub orientable: bool,
+    /// Euler characteristic.
+    pub euler: i64,
+    /// Number of boundary circles.
+    pub boundaries: usize,
+}
+
+/// Topology of a sample surface, as a subset of R^N (self-crossings identified).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Truth {
+    /// Betti numbers over the rational numbers.
+    pub betti: [usize; 3],
+    /// Betti numbers over the field of two elements.
+    pub betti_mod_2: [usize; 3],
+    /// Torsion coefficients of the first homology group over the integers.
+    pub torsion: &'static [u64],
+    /// The pieces, in the order of the labels of a sample.
+    pub pieces: &'static [PieceTruth],
+    /// Double curves (four cells meet): circles, or arcs that end on a boundary or in a pinch point.
+    pub double_curves: usize,
+    /// Curves where three cells meet.
+    pub junction_curves: usize,
+    /// Boundary circles of the immersed surface.
+    pub boundary_curves: usize,
+    /// Points where three sheets cross.
+    pub triple_points: usize,
+    /// Points where two sheets, or a sheet and a curve, meet and nothing else near them does.
+    pub isolated_crossings: usize,
+    /// Points where the surface is no immersion.
+    pub pinch_points: usize,
+}
+
+/// Parameters of one of the paper's examples and what the paper printed for it (its sections 4 and 5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PaperExample {
+    /// Number of points drawn (before thinning).
+    pub count: usize,
+    /// Minimal spacing that the points were thinned to.
+    pub thinning: Option<f64>,
+    /// Number of points after thinning, as printed.
+    pub count_after_thinning: Option<usize>,
+    /// Radius of a neighborhood, eps.
+    pub epsilon: f64,
+    /// Radius for the triangulation, where it is another one.
+    pub triangulation_epsilon: Option<f64>,
+    /// Tolerance of the dimension estimate, dt.
+    pub dimension_tolerance: Option<f64>,
+    /// Tolerance of the two-plane fit, dp.
+    pub fit_tolerance: Option<f64>,
+    /// Tolerance of the double curve, eps_p.
+    pub curve_tolerance: Option<f64>,
+    /// Separation of the landmarks, dl. For the immersed Klein bottle it is not printed; 0.15 fits the
+    /// printed numbers of landmarks and neighbors.
+    pub landmark_separation: f64,
+    /// Whether every point is taken as 2-dimensional.
+    pub surface: bool,
+    /// Whether the boundary points are given.
+    pub boundary_given: bool,
+    /// Number of landmarks, as printed.
+    pub landmarks: usize,
+    /// Mean number of landmarks in a neighborhood, as printed.
+    pub mean_neighbors: usize,
+    /// Betti numbers over the rational numbers, as printed.
+    pub betti: [usize; 3],
+    /// Seconds of preprocessing and of reconstruction, as printed (MATLAB, 2.26 GHz Xeon).
+    pub seconds: [f64; 2],
+}
+
+/// What kind of curve a true curve is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveKind {
+    /// Two sheets cross: four cells meet.
+    Double,
+    /// Three cells meet.
+    Junction,
+    /// The surface ends: one cell.
+    Boundary,
+}
+
+/// A curve of the true surface as a line of points on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrueCurve {
+    /// Its kind.
+    pub kind: CurveKind,
+    /// Whether the last point is followed by the first.
+    pub closed: bool,
+    /// Points exactly on the curve, in order; the first is not repeated at the end.
+    pub points: PointCloud<f64>,
+}
