@@ -69,7 +69,7 @@ fn main() {
     let mut deg = vec![0; st.rows.len()];
     for e in &st.waist.curve_edges { for v in e.ends { deg[v as usize] += 1; } }
     for v in 0..st.counts.curve_landmarks { if deg[v] != 2 { eprintln!("curve landmark {v} degree {} at {:?}", deg[v], an.places.point(st.rows[v])); } }
-    let large: Box<dyn TriangleRule> = if a.contains(&"--angle".into()) { Box::new(LargestAngle) } else { Box::new(MinimumCircumradius) };
+    let large: Box<dyn TriangleRule> = if a.contains(&"--circ".into()) { Box::new(MinimumCircumradius) } else { Box::new(LargestAngle) };
     let tri = Triangulator { chart: &ClassicalScaling, test: &crosscap_algorithms::predicate::PlanarPredicate, rule: large.as_ref(), largest_circumradius: num("--maxr").unwrap_or(4.0) * dl, repair: !a.contains(&"--norepair".into()) };
     let out = tri.triangulate(&st.waist).unwrap();
     eprintln!("tri {:?} {:?} incomplete {:?}", t0.elapsed(), out.counts, out.incomplete.len());

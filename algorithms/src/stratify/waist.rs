@@ -52,6 +52,11 @@ pub struct Stratification<S> {
 const CONTACTS: usize = 6;
 /// Spacing of the decompositions that label points, as a share of the radius of their fit.
 const REFERENCE_SPACING: f64 = 0.2;
+/// Where landmarks are sparse a chart of the usual radius misses triangles that it has to keep clear
+/// of: charts with fewer members are widened by a factor, a few times.
+const LEAST_MEMBERS: usize = 14;
+const WIDENING: f64 = 1.25;
+const WIDENINGS: usize = 2;
 /// A cell whose points begin farther than this many dl from a curve landmark does not touch it.
 const CONTACT_REACH: f64 = 2.0;
 
@@ -115,40 +120,48 @@ pub fn stratify<S: Scalar>(
     let contacts = Contacts::new(analyzer, analysis, &curves, &refs, options.dl);
     let mut flood = Flood::new(n);
     let mut hits = vec![0u32; contacts.groups.len()];
+    let mut touched: Vec<u32> = Vec::new();
     let mut neighborhoods = Vec::with_capacity(rows.len());
     let starts = (curves.rows.len()..rows.len())
         .map(|k| (k, None))
         .chain(contacts.groups.iter().enumerate().map(|(g, group)| (group.landmark, Some(g))));
     for (center, group) in starts {
         let origin = places.point(rows[center]);
-        let reach = options.tri_eps * options.tri_eps;
-        let inside = |row: usize| squared_distance(origin, places.point(row)) < reach;
-        match group {
-            None => flood.run(&graph, std::iter::once(rows[center] as u32), inside),
-            Some(g) => flood.run(&graph, contacts.groups[g].rows.iter().copied(), inside),
-        }
-        let mut touched = Vec::new();
         let mut members: Vec<u32> = Vec::new();
-        for &row in &flood.reached {
-            let k = landmark_at[row as usize];
-            if k != u32::MAX && k as usize != center {
-                members.push(k);
+        let mut radius = options.tri_eps;
+        for widening in 0..=WIDENINGS {
+            let reach = radius * radius;
+            let inside = |row: usize| squared_distance(origin, places.point(row)) < reach;
+            match group {
+                None => flood.run(&graph, std::iter::once(rows[center] as u32), inside),
+                Some(g) => flood.run(&graph, contacts.groups[g].rows.iter().copied(), inside),
             }
-            for &g in contacts.of(row as usize) {
-                if hits[g as usize] == 0 {
-                    touched.push(g);
+            members.clear();
+            touched.clear();
+            for &row in &flood.reached {
+                let k = landmark_at[row as usize];
+                if k != u32::MAX && k as usize != center {
+                    members.push(k);
                 }
-                hits[g as usize] += 1;
+                for &g in contacts.of(row as usize) {
+                    if hits[g as usize] == 0 {
+                        touched.push(g);
+                    }
+                    hits[g as usize] += 1;
+                }
             }
-        }
-        touched.sort_unstable();
-        for g in touched {
-            let group = &contacts.groups[g as usize];
-            let enough = 2 * hits[g as usize] as usize >= group.rows.len();
-            hits[g as usize] = 0;
-            if enough && group.landmark != center && inside(rows[group.landmark]) {
-                members.push(group.landmark as u32);
+            for &g in &touched {
+                let group = &contacts.groups[g as usize];
+                let enough = 2 * hits[g as usize] as usize >= group.rows.len();
+                hits[g as usize] = 0;
+                if enough && group.landmark != center && inside(rows[group.landmark]) {
+                    members.push(group.landmark as u32);
+                }
             }
+            if members.len() >= LEAST_MEMBERS || widening == WIDENINGS {
+                break;
+            }
+            radius *= WIDENING;
         }
         members.sort_unstable();
         members.dedup();

@@ -54,13 +54,15 @@ pub struct Triangulation {
     pub counts: TriangulationCounts,
 }
 
-/// How often the surroundings of a star are torn up before the landmark is dropped, and how
-/// many of its neighbors lose their triangles each time.
-const TEARS: [usize; 4] = [0, 6, 12, 19];
+/// How many of the nearest members of a chart lose their triangles in a repair, one attempt after
+/// another.
+const TEARS: [usize; 6] = [0, 4, 8, 12, 18, 26];
+/// How many nearest neighbors are tried as the landmark to drop when tearing does not help.
+const DROPS: usize = 6;
 /// Two landmarks of a curve closer than this many steps along it are joined by chain edges only.
 const SHORTCUT_STEPS: usize = 4;
-/// Repairs allowed: a constant and a share of the landmarks.
-const REPAIR_BASE: usize = 100;
+/// Passes over the stars of curve landmarks: a repair of one may open another.
+const CURVE_PASSES: usize = 4;
 
 /// The growing complex.
 pub(super) struct Front<'a, S: Scalar> {
@@ -76,6 +78,8 @@ pub(super) struct Front<'a, S: Scalar> {
     stamp: Vec<u32>,
     at: Vec<u32>,
     round: u32,
+    /// Triangles added (`true`) and removed since the last mark.
+    log: Vec<(bool, [u32; 3])>,
 }
 
 impl<S: Scalar> Front<'_, S> {
@@ -160,9 +164,11 @@ impl<S: Scalar> Front<'_, S> {
         for c in corners {
             self.incident[c as usize].push(t);
         }
+        self.log.push((true, corners));
     }
 
     fn remove(&mut self, t: u32) {
+        self.log.push((false, self.triangles[t as usize]));
         for c in self.triangles[t as usize] {
             self.incident[c as usize].retain(|&x| x != t);
         }
@@ -170,11 +176,36 @@ impl<S: Scalar> Front<'_, S> {
         self.free.push(t);
     }
 
-    /// Removes all triangles at `v`; the landmarks that lost one are appended to `touched`.
-    fn clear(&mut self, v: u32, touched: &mut Vec<u32>) {
+    /// Removes the triangles at `v` whose corners all satisfy `within`; the landmarks that lost one are
+    /// appended to `touched`.
+    fn clear(&mut self, v: u32, within: impl Fn(u32) -> bool, touched: &mut Vec<u32>) {
         for t in self.incident[v as usize].clone() {
-            touched.extend(self.triangles[t as usize]);
-            self.remove(t);
+            let corners = self.triangles[t as usize];
+            if corners.iter().all(|&c| within(c)) {
+                touched.extend(corners);
+                self.remove(t);
+            }
+        }
+    }
+
+    /// Undoes everything since the log had `length` entries.
+    fn roll_back(&mut self, length: usize) {
+        while self.log.len() > length {
+            let Some((added, corners)) = self.log.pop() else {
+                break;
+            };
+            if added {
+                let t = self.incident[corners[0] as usize]
+                    .iter()
+                    .copied()
+                    .find(|&t| self.triangles[t as usize] == corners);
+                if let Some(t) = t {
+                    self.remove(t);
+                }
+            } else {
+                self.add(corners);
+            }
+            self.log.pop();
         }
     }
 }
@@ -183,8 +214,10 @@ impl Triangulator<'_> {
     /// Triangulates: every landmark of a cell is visited and its star closed, the front
     /// advancing from neighbor to neighbor; then the stars of curve landmarks are completed, cell by cell.
     ///
-    /// When a star cannot be closed the triangles around it are removed, wider each time,
-    /// and it is closed first; after four times the landmark is dropped.
+    /// When a star cannot be closed, a repair removes the triangles around it, closes it first
+    /// and then every star that lost a triangle; wider and wider, and at last without the landmark or
+    /// one of its neighbors. A repair counts only as a whole: one that leaves any star open is
+    /// undone, so that a site that cannot be triangulated stays where it is.
     ///
     /// # Errors
     /// Those of [`StratifiedLandmarks::check`]; [`Error::Law`] for a chart that is not finite.
@@ -210,6 +243,7 @@ impl Triangulator<'_> {
             stamp: vec![0; count],
             at: vec![0; count],
             round: 0,
+            log: Vec::new(),
         };
         let mut home = vec![usize::MAX; count];
         let mut sectors: Vec<Vec<usize>> = vec![Vec::new(); count];
@@ -225,7 +259,6 @@ impl Triangulator<'_> {
             home,
             sectors,
             done: vec![false; count],
-            tries: vec![0; count],
             queue: VecDeque::new(),
             kept: Vec::new(),
             counts: TriangulationCounts::default(),
@@ -252,7 +285,6 @@ struct Run<'r, 'a, S: Scalar> {
     /// Neighborhoods of each landmark on a curve, one a cell.
     sectors: Vec<Vec<usize>>,
     done: Vec<bool>,
-    tries: Vec<usize>,
     queue: VecDeque<u32>,
     kept: Vec<u32>,
     counts: TriangulationCounts,
@@ -262,45 +294,67 @@ struct Run<'r, 'a, S: Scalar> {
 impl<S: Scalar> Run<'_, '_, S> {
     fn all(&mut self) -> Result<(), Error> {
         let count = self.home.len();
-        let budget = REPAIR_BASE + count / 2;
+        let mut open = Vec::new();
         for seed in 0..count as u32 {
             self.queue.push_back(seed);
-            self.drain(budget)?;
+            while let Some(v) = self.queue.pop_front() {
+                let k = self.home[v as usize];
+                if self.done[v as usize] || self.front.dropped[v as usize] || k == usize::MAX {
+                    continue;
+                }
+                if !self.visit_or_undo(k)? && !self.mend(v, k, false)? {
+                    open.push((v, k));
+                }
+                self.done[v as usize] = true;
+                self.advance(v);
+            }
+        }
+        // Once more for those that stayed open, now that their surroundings are complete; a
+        // landmark is given up only then, since a hole can be closed only from all around.
+        for (v, k) in std::mem::take(&mut open) {
+            if !self.front.dropped[v as usize]
+                && !self.visit_or_undo(k)?
+                && !self.mend(v, k, true)?
+            {
+                open.push((v, k));
+            }
         }
         // Stars of curve landmarks, which no visit of a cell has to close.
-        for v in 0..count as u32 {
-            for k in self.sectors[v as usize].clone() {
-                if !self.visit(k)? {
-                    self.give_up_or_tear(v, k, budget)?;
+        let mut curve_open = Vec::new();
+        for _ in 0..CURVE_PASSES {
+            curve_open.clear();
+            let before = self.counts.repairs;
+            for v in 0..count as u32 {
+                for k in self.sectors[v as usize].clone() {
+                    if !self.visit_or_undo(k)? && !self.mend(v, k, true)? {
+                        curve_open.push((v, k));
+                    }
                 }
             }
+            if self.counts.repairs == before {
+                break;
+            }
         }
+        open.extend(curve_open);
+        self.incomplete = open.into_iter().map(|(v, _)| Incomplete { landmark: v }).collect();
+        self.incomplete.sort_unstable_by_key(|i| i.landmark);
+        self.incomplete.dedup();
         Ok(())
     }
 
-    fn drain(&mut self, budget: usize) -> Result<(), Error> {
-        while let Some(v) = self.queue.pop_front() {
-            let k = self.home[v as usize];
-            if self.done[v as usize] || self.front.dropped[v as usize] || k == usize::MAX {
-                continue;
-            }
-            if self.visit(k)? {
-                self.done[v as usize] = true;
-                let mut next: Vec<u32> = self.front.incident[v as usize]
-                    .iter()
-                    .flat_map(|&t| self.front.triangles[t as usize])
-                    .filter(|&u| !self.done[u as usize])
-                    .collect();
-                next.sort_unstable();
-                next.dedup();
-                self.queue.extend(next);
-            } else {
-                self.give_up_or_tear(v, k, budget)?;
-            }
-        }
-        Ok(())
+    /// Queues the neighbors of `v`.
+    fn advance(&mut self, v: u32) {
+        let mut next: Vec<u32> = self.front.incident[v as usize]
+            .iter()
+            .flat_map(|&t| self.front.triangles[t as usize])
+            .filter(|&u| !self.done[u as usize])
+            .collect();
+        next.sort_unstable();
+        next.dedup();
+        self.queue.extend(next);
     }
 
+    /// Closes the star of a neighborhood's center; `false` when it stays open.
     fn visit(&mut self, k: usize) -> Result<bool, Error> {
         self.counts.visits += 1;
         let input = self.front.input;
@@ -311,46 +365,105 @@ impl<S: Scalar> Run<'_, '_, S> {
         Ok(closed)
     }
 
-    /// A star that cannot be closed: tears up its surroundings, or drops the landmark.
-    fn give_up_or_tear(&mut self, v: u32, k: usize, budget: usize) -> Result<(), Error> {
-        let on_curve = self.front.input.strata[v as usize] < 2;
-        let spent = self.counts.repairs >= budget || !self.front.parts.repair;
-        let level = self.tries[v as usize];
-        if spent || (on_curve && level >= TEARS.len()) {
-            self.incomplete.push(Incomplete { landmark: v });
-            self.done[v as usize] = true;
-            return Ok(());
+    /// The same, leaving no part of a star behind that stays open.
+    fn visit_or_undo(&mut self, k: usize) -> Result<bool, Error> {
+        self.front.log.clear();
+        let closed = self.visit(k)?;
+        if !closed {
+            self.front.roll_back(0);
         }
-        self.tries[v as usize] += 1;
-        self.counts.repairs += 1;
+        Ok(closed)
+    }
+
+    /// Tries to close the star of `v` by repairs, with `drop` also by giving up a landmark.
+    /// `true` when one succeeded.
+    fn mend(&mut self, v: u32, k: usize, drop: bool) -> Result<bool, Error> {
+        if !self.front.parts.repair {
+            return Ok(false);
+        }
+        let members: Vec<u32> = self.front.input.neighborhoods[k]
+            .members
+            .iter()
+            .copied()
+            .filter(|&m| !self.front.dropped[m as usize])
+            .collect();
+        for reach in TEARS {
+            if reach < members.len() + 4 && self.attempt(v, k, &members, reach, None)? {
+                return Ok(true);
+            }
+        }
+        if !drop {
+            return Ok(false);
+        }
+        let cell = |u: &u32| self.front.input.strata[*u as usize] == 2;
+        let droppable: Vec<u32> = members.iter().copied().filter(cell).take(1 + DROPS).collect();
+        for u in droppable {
+            for reach in [0, 8] {
+                if self.attempt(v, k, &members, reach, Some(u))? {
+                    self.counts.dropped += 1;
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// One repair, all or nothing.
+    fn attempt(
+        &mut self,
+        v: u32,
+        k: usize,
+        members: &[u32],
+        reach: usize,
+        drop: Option<u32>,
+    ) -> Result<bool, Error> {
+        self.front.log.clear();
         let mut touched = Vec::new();
-        self.front.clear(v, &mut touched);
-        let members = &self.front.input.neighborhoods[k].members;
-        let reach = if level < TEARS.len() { TEARS[level] } else { 0 };
+        // A landmark on a curve has triangles in other cells, which are none of this chart's business.
+        let mut sorted = members.to_vec();
+        sorted.sort_unstable();
+        let inside = |c: u32| sorted.binary_search(&c).is_ok();
+        let on_curve = self.front.input.strata[v as usize] < 2;
+        let within = |c: u32| !on_curve || inside(c);
+        self.front.clear(v, within, &mut touched);
         for &m in members.iter().skip(1).take(reach) {
-            self.front.clear(m, &mut touched);
+            if self.front.input.strata[m as usize] == 2 {
+                self.front.clear(m, |_| true, &mut touched);
+            } else {
+                self.front.clear(m, inside, &mut touched);
+            }
         }
-        if level >= TEARS.len() {
-            self.front.dropped[v as usize] = true;
-            self.counts.dropped += 1;
-            touched.extend(members.iter().skip(1).take(6));
+        if let Some(u) = drop {
+            self.front.clear(u, |_| true, &mut touched);
+            self.front.dropped[u as usize] = true;
         }
+        let mut order: Vec<u32> = members.to_vec();
         touched.sort_unstable();
         touched.dedup();
-        let far: Vec<u32> = members.iter().copied().filter(|m| touched.binary_search(m).is_ok()).collect();
-        for &u in touched.iter().filter(|u| !far.contains(u)).chain(far.iter().rev()) {
-            self.done[u as usize] = false;
-            self.queue.push_front(u);
-        }
-        self.queue.push_front(v);
-        self.done[v as usize] = false;
-        if on_curve {
-            // Its own cell is not visited by the front: close it now, before the others.
-            if self.visit(k)? {
-                return self.drain(budget);
+        order.retain(|m| touched.binary_search(m).is_ok() && *m != v);
+        let far: Vec<u32> = touched.into_iter().filter(|m| !members.contains(m)).collect();
+        order.extend(far);
+        let mut good = drop == Some(v) || self.visit(k)?;
+        for u in order {
+            if !good {
+                break;
             }
-            return self.give_up_or_tear(v, k, budget);
+            let home = self.home[u as usize];
+            if self.done[u as usize] && home != usize::MAX && !self.front.dropped[u as usize] {
+                good = self.visit(home)?;
+            }
         }
-        Ok(())
+        if good {
+            self.counts.repairs += 1;
+            // Landmarks that gained triangles and are not visited yet are on the front.
+            let reached: Vec<u32> = self.front.log.iter().flat_map(|l| l.1).collect();
+            self.queue.extend(reached.into_iter().filter(|&u| !self.done[u as usize]));
+        } else {
+            self.front.roll_back(0);
+            if let Some(u) = drop {
+                self.front.dropped[u as usize] = false;
+            }
+        }
+        Ok(good)
     }
 }

@@ -157,8 +157,12 @@ impl<'a> Patch<'a> {
         let mut best: Option<(f64, usize, Option<usize>)> = None;
         for end in ends {
             let has: Vec<u32> = self.across(center, end).collect();
-            let wanted = if front.cells(center, end).is_some() { 1 } else { 2 };
-            if has.len() >= wanted {
+            // A triangle of an ordinary edge counts even where the chart does not show it.
+            let closed = match front.cells(center, end) {
+                Some(_) => !has.is_empty(),
+                None => front.count(center, end) >= 2,
+            };
+            if closed {
                 continue;
             }
             let length = front.distance(center, end);
