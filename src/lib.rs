@@ -1,1 +1,22 @@
-//! Facade of Crosscap.
+//! Crosscap turns a point cloud in R^N into a triangulated surface that may cross itself.
+//!
+//! This crate is the facade: the [`Pipeline`] puts the parts of the workspace together with good
+//! defaults, the [`prelude`] names what one needs every day, and the modules below lead to everything else.
+
+pub mod pipeline;
+
+pub use crosscap_algorithms as algorithms;
+pub use crosscap_backends as backends;
+pub use crosscap_core as core;
+pub use pipeline::{Method, Outcome, Parameters, Pipeline, Report, Stage};
+
+/// What a reconstruction needs, in one line.
+pub mod prelude {
+    pub use crate::pipeline::{Method, Outcome, Parameters, Pipeline, Report, Stage};
+    pub use crosscap_algorithms::certificate::Verdict;
+    pub use crosscap_algorithms::surfaces::{SampleSurface, Sampling};
+    pub use crosscap_core::{
+        Complex, DimensionEstimator, Error, LandmarkSelector, LocalChart, Mesh, MetricSpace,
+        NeighborhoodOracle, PointCloud, SingularityModel,
+    };
+}

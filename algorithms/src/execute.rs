@@ -30,7 +30,9 @@ pub(crate) fn map<T: Send + Sync, C>(
     scratch: impl Fn() -> C + Sync,
     work: impl Fn(&mut C, usize) -> T + Sync,
 ) -> Vec<T> {
-    let blocks: Vec<OnceLock<Vec<T>>> = (0..count.div_ceil(BLOCK)).map(|_| OnceLock::new()).collect();
+    let blocks: Vec<OnceLock<Vec<T>>> = (0..count.div_ceil(BLOCK))
+        .map(|_| OnceLock::new())
+        .collect();
     execute.ranges(blocks.len(), &|range| {
         let mut own = scratch();
         for b in range {
@@ -39,5 +41,8 @@ pub(crate) fn map<T: Send + Sync, C>(
             let _ = blocks[b].set(items.collect());
         }
     });
-    blocks.into_iter().flat_map(|b| b.into_inner().unwrap_or_default()).collect()
+    blocks
+        .into_iter()
+        .flat_map(|b| b.into_inner().unwrap_or_default())
+        .collect()
 }

@@ -18,7 +18,10 @@ pub struct PrincipalFrame {
 impl PrincipalFrame {
     /// Frame of the points of `cloud` with the given indices. O(k N^2 + N^3), or
     /// O(k^2 N + k^3) where there are fewer points than coordinates.
-    pub fn of<S: Scalar>(cloud: &PointCloud<S>, indices: impl Iterator<Item = usize> + Clone) -> Self {
+    pub fn of<S: Scalar>(
+        cloud: &PointCloud<S>,
+        indices: impl Iterator<Item = usize> + Clone,
+    ) -> Self {
         let n = cloud.dimension();
         let mut mean = vec![0.0; n];
         let mut count = 0usize;
@@ -62,7 +65,10 @@ impl PrincipalFrame {
         Self {
             mean,
             axes,
-            variances: order.iter().map(|&k| eigen.eigenvalues[k].max(0.0)).collect(),
+            variances: order
+                .iter()
+                .map(|&k| eigen.eigenvalues[k].max(0.0))
+                .collect(),
         }
     }
 
@@ -175,7 +181,11 @@ mod tests {
         let twice: Vec<usize> = (0..4).chain(0..4).collect();
         let covariance = PrincipalFrame::of(&few, twice.iter().copied());
         for k in 0..3 {
-            assert_relative_eq!(gram.variances[k], covariance.variances[k], max_relative = 1e-9);
+            assert_relative_eq!(
+                gram.variances[k],
+                covariance.variances[k],
+                max_relative = 1e-9
+            );
         }
     }
 }

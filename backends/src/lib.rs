@@ -4,4 +4,5 @@ pub mod euclidean;
 pub mod files;
 pub mod geodesic;
 pub mod linear_program;
+pub mod parallel;
 pub mod picture;

@@ -60,7 +60,9 @@ impl<S: Scalar> PrincipalComponents<S> {
                 break;
             }
         }
-        let margin = (before / self.dt).log10().min((self.dt / after.max(1e-300)).log10());
+        let margin = (before / self.dt)
+            .log10()
+            .min((self.dt / after.max(1e-300)).log10());
         (dimension, dimension as f64, margin.clamp(0.0, 1.0))
     }
 }

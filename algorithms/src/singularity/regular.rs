@@ -22,10 +22,8 @@ impl SingularityModel for OneSheet {
             });
         }
         let place = |k: usize| Vector3::from_column_slice(local.point(k));
-        let mut patch = QuadraticPatch::plane(
-            Vector3::zeros(),
-            [Vector3::x(), Vector3::y(), Vector3::z()],
-        );
+        let mut patch =
+            QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
         patch.fit((0..local.fitted).map(place), local.radius);
         let sum: f64 = (0..local.fitted)
             .map(|k| patch.signed_distance(&place(k)).powi(2))

@@ -54,7 +54,11 @@ impl PlanePair {
         let linear = Vector3::new(a[3], a[6], a[8]) / size;
         let parts = quadratic.symmetric_eigen();
         let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| parts.eigenvalues[j].abs().total_cmp(&parts.eigenvalues[i].abs()));
+        order.sort_by(|&i, &j| {
+            parts.eigenvalues[j]
+                .abs()
+                .total_cmp(&parts.eigenvalues[i].abs())
+        });
         let (mut l1, mut l2) = (parts.eigenvalues[order[0]], parts.eigenvalues[order[1]]);
         let mut p1: Vector3<f64> = parts.eigenvectors.column(order[0]).into();
         let mut p2: Vector3<f64> = parts.eigenvectors.column(order[1]).into();
@@ -237,7 +241,13 @@ impl TwoPlanes {
 impl TwoPlanes {
     /// Whether the data show a crossing at `place`: points of all four cells close by, and
     /// some point in the band. Patches also cross where they are mere extrapolation.
-    fn supported(&self, place: &Vector3<f64>, points: &[Vector3<f64>], labels: &[u8], radius: f64) -> bool {
+    fn supported(
+        &self,
+        place: &Vector3<f64>,
+        points: &[Vector3<f64>],
+        labels: &[u8],
+        radius: f64,
+    ) -> bool {
         let mut nearest = [f64::INFINITY; 5];
         for (x, &label) in points.iter().zip(labels) {
             let n = &mut nearest[label as usize];
@@ -267,7 +277,9 @@ impl SingularityModel for TwoPlanes {
         let points = &all[..count];
         let mut planes = PlanePair::direct(points.iter().copied(), local.radius)?;
         if self.refinement_rounds > 0 {
-            planes = planes.refined(points.iter().copied(), self.refinement_rounds).0;
+            planes = planes
+                .refined(points.iter().copied(), self.refinement_rounds)
+                .0;
         }
         let center = points[local.center];
         let (tangent, origin) = planes.line(&center).ok_or(Rejection::NoRealSolution)?;
@@ -340,7 +352,9 @@ impl SingularityModel for TwoPlanes {
         let reached = meet(&sheets, center, LARGEST_STEP * local.radius)
             .filter(|x| self.supported(x, points, &labels, local.radius));
         let (moved, center_offset) = match reached {
-            Some(x) if labels[local.center] == 0 || (x - center).norm() < WITNESS_REACH * self.ep => {
+            Some(x)
+                if labels[local.center] == 0 || (x - center).norm() < WITNESS_REACH * self.ep =>
+            {
                 (x, (x - center).norm())
             }
             Some(_) => (origin, f64::INFINITY),

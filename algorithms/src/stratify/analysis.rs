@@ -4,8 +4,8 @@ use crate::execute::{self, Execute};
 use crate::principal::PrincipalFrame;
 use crate::singularity::OneSheet;
 use crosscap_core::{
-    Decomposition, DimensionEstimator, Error, LocalPoints, Neighbor, Neighborhood,
-    NeighborhoodOracle, MetricSpace, PointCloud, Scalar, SingularityModel, squared_distance,
+    Decomposition, DimensionEstimator, Error, LocalPoints, MetricSpace, Neighbor, Neighborhood,
+    NeighborhoodOracle, PointCloud, Scalar, SingularityModel, squared_distance,
 };
 
 /// What a point of the cloud is.
@@ -93,9 +93,10 @@ impl Analysis {
     ) -> usize {
         let mut witnesses = std::mem::take(&mut self.witnesses);
         witnesses.sort_by(|a, b| a.offset.total_cmp(&b.offset).then(a.row.cmp(&b.row)));
-        let slack = witnesses.last().map_or(0.0, |w| w.offset).max(
-            self.offsets.iter().copied().fold(0.0, f64::max),
-        );
+        let slack = witnesses
+            .last()
+            .map_or(0.0, |w| w.offset)
+            .max(self.offsets.iter().copied().fold(0.0, f64::max));
         let mut rows = Vec::new();
         let mut filled = 0;
         for w in witnesses {
@@ -213,7 +214,11 @@ impl<S: Scalar> Analyzer<'_, S> {
                         out.offsets[i] = w.offset;
                         out.radii[i] = w.radius;
                         out.model[i] = w.model;
-                        out.roles[i] = if boundary[i] { Role::Corner } else { Role::Curve };
+                        out.roles[i] = if boundary[i] {
+                            Role::Corner
+                        } else {
+                            Role::Curve
+                        };
                     }
                 }
             }
@@ -366,7 +371,9 @@ impl<S: Scalar> Analyzer<'_, S> {
             center,
             radius,
         };
-        let fit = self.models[analysis.model[i] as usize].decompose(&local).ok()?;
+        let fit = self.models[analysis.model[i] as usize]
+            .decompose(&local)
+            .ok()?;
         Some((fit, scratch.near.iter().map(|x| x.index).collect()))
     }
 }

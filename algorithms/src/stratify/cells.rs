@@ -16,7 +16,10 @@ pub(super) struct Reference {
 
 impl Reference {
     pub(super) fn label(&self, row: usize) -> Option<u8> {
-        let at = self.labels.binary_search_by_key(&(row as u32), |&(r, _)| r).ok()?;
+        let at = self
+            .labels
+            .binary_search_by_key(&(row as u32), |&(r, _)| r)
+            .ok()?;
         Some(self.labels[at].1)
     }
 
@@ -40,20 +43,25 @@ pub(super) fn references<S: Scalar>(
     analysis: &Analysis,
     rows: &[usize],
 ) -> Vec<Reference> {
-    execute::map(analyzer.execute, rows.len(), Scratch::default, |scratch, k| {
-        let (mut fit, near) = analyzer.decomposition(analysis, rows[k], scratch)?;
-        let mut labels: Vec<(u32, u8)> = near
-            .iter()
-            .map(|&r| r as u32)
-            .zip(std::mem::take(&mut fit.labels))
-            .collect();
-        labels.sort_unstable();
-        Some(Reference {
-            row: rows[k],
-            labels,
-            fit,
-        })
-    })
+    execute::map(
+        analyzer.execute,
+        rows.len(),
+        Scratch::default,
+        |scratch, k| {
+            let (mut fit, near) = analyzer.decomposition(analysis, rows[k], scratch)?;
+            let mut labels: Vec<(u32, u8)> = near
+                .iter()
+                .map(|&r| r as u32)
+                .zip(std::mem::take(&mut fit.labels))
+                .collect();
+            labels.sort_unstable();
+            Some(Reference {
+                row: rows[k],
+                labels,
+                fit,
+            })
+        },
+    )
     .into_iter()
     .flatten()
     .collect()
@@ -92,21 +100,16 @@ impl CellGraph {
                 }
             }
         }
-        let rows = execute::map(
-            analyzer.execute,
-            n,
-            Vec::new,
-            |near, i| {
-                if analysis.roles[i] != Role::Regular {
-                    return Vec::new();
-                }
-                analyzer.oracle.nearest(i, GRAPH_NEIGHBORS + 1, near);
-                near.iter()
-                    .map(|x| x.index)
-                    .filter(|&j| j != i && analysis.roles[j] == Role::Regular)
-                    .collect::<Vec<usize>>()
-            },
-        );
+        let rows = execute::map(analyzer.execute, n, Vec::new, |near, i| {
+            if analysis.roles[i] != Role::Regular {
+                return Vec::new();
+            }
+            analyzer.oracle.nearest(i, GRAPH_NEIGHBORS + 1, near);
+            near.iter()
+                .map(|x| x.index)
+                .filter(|&j| j != i && analysis.roles[j] == Role::Regular)
+                .collect::<Vec<usize>>()
+        });
         let mut edges: Vec<(u32, u32)> = Vec::with_capacity(n * GRAPH_NEIGHBORS * 2);
         let mut cut = 0;
         for (i, row) in rows.iter().enumerate() {
@@ -141,7 +144,13 @@ impl CellGraph {
 }
 
 /// Whether the labels put `i` and `j` into different strata, or onto the curve itself.
-fn separated(i: usize, j: usize, references: &[Reference], nearest: &[u32], closest: &[f64]) -> bool {
+fn separated(
+    i: usize,
+    j: usize,
+    references: &[Reference],
+    nearest: &[u32],
+    closest: &[f64],
+) -> bool {
     let mut order = [(closest[i], nearest[i]), (closest[j], nearest[j])];
     if order[1].0 < order[0].0 {
         order.swap(0, 1);

@@ -37,19 +37,21 @@ struct Kind {
 }
 
 impl Curves {
-    pub(super) fn new<S: Scalar>(
-        analyzer: &Analyzer<'_, S>,
-        analysis: &Analysis,
-        dl: f64,
-    ) -> Self {
+    pub(super) fn new<S: Scalar>(analyzer: &Analyzer<'_, S>, analysis: &Analysis, dl: f64) -> Self {
         let mut out = Self::default();
         let corners = thin(analyzer, analysis, dl, |r| r == Role::Corner);
         out.corner_references = references(analyzer, analysis, &corners);
         out.rows = corners;
         out.corners = out.rows.len();
         for kind in [
-            Kind { role: Role::Boundary, cells: 1 },
-            Kind { role: Role::Curve, cells: 4 },
+            Kind {
+                role: Role::Boundary,
+                cells: 1,
+            },
+            Kind {
+                role: Role::Curve,
+                cells: 4,
+            },
         ] {
             out.lay(analyzer, analysis, dl, &kind);
         }
@@ -59,9 +61,16 @@ impl Curves {
         out
     }
 
-    fn lay<S: Scalar>(&mut self, analyzer: &Analyzer<'_, S>, analysis: &Analysis, dl: f64, kind: &Kind) {
+    fn lay<S: Scalar>(
+        &mut self,
+        analyzer: &Analyzer<'_, S>,
+        analysis: &Analysis,
+        dl: f64,
+        kind: &Kind,
+    ) {
         let places = &analysis.places;
-        let distance = |a: usize, b: usize| squared_distance(places.point(a), places.point(b)).sqrt();
+        let distance =
+            |a: usize, b: usize| squared_distance(places.point(a), places.point(b)).sqrt();
         let mut rows = thin(analyzer, analysis, NODE_SPACING * dl, |r| r == kind.role);
         let label = |row: usize| -> Option<(usize, u8)> {
             self.corner_references
@@ -75,13 +84,24 @@ impl Curves {
         // Next to a corner the points of a boundary are in the band of both sheets: which
         // branch they are on cannot be told, and the corner stands for them.
         rows.retain(|&row| {
-            self.rows[..self.corners].iter().all(|&c| distance(c, row) > NODE_SPACING * dl)
+            self.rows[..self.corners]
+                .iter()
+                .all(|&c| distance(c, row) > NODE_SPACING * dl)
                 && (kind.role == Role::Curve
-                    || label(row).is_none_or(|(k, l)| self.corner_references[k].is_cell(l) || distance(self.corner_references[k].row, row) > dl))
+                    || label(row).is_none_or(|(k, l)| {
+                        self.corner_references[k].is_cell(l)
+                            || distance(self.corner_references[k].row, row) > dl
+                    }))
         });
         let labels: Vec<Option<(usize, u8)>> = rows
             .iter()
-            .map(|&row| if kind.role == Role::Boundary { label(row) } else { None })
+            .map(|&row| {
+                if kind.role == Role::Boundary {
+                    label(row)
+                } else {
+                    None
+                }
+            })
             .collect();
         let mut graph: Vec<Vec<(usize, f64)>> = vec![Vec::new(); rows.len()];
         let mut near = Vec::new();
@@ -89,9 +109,15 @@ impl Curves {
         for (k, &row) in rows.iter().enumerate() {
             at[row] = k;
         }
-        let slack = 2.0 * rows.iter().map(|&r| analysis.offsets[r]).fold(0.0, f64::max);
+        let slack = 2.0
+            * rows
+                .iter()
+                .map(|&r| analysis.offsets[r])
+                .fold(0.0, f64::max);
         for (k, &row) in rows.iter().enumerate() {
-            analyzer.oracle.within(row, S::of(REACH * dl + slack), &mut near);
+            analyzer
+                .oracle
+                .within(row, S::of(REACH * dl + slack), &mut near);
             for x in &near {
                 let other = at[x.index];
                 if other == usize::MAX || other == k {
@@ -154,9 +180,14 @@ impl Curves {
         first_corner: usize,
     ) {
         let places = &analysis.places;
-        let distance = |a: usize, b: usize| squared_distance(places.point(a), places.point(b)).sqrt();
+        let distance =
+            |a: usize, b: usize| squared_distance(places.point(a), places.point(b)).sqrt();
         let anchors: Vec<usize> = (first_corner..graph.len())
-            .filter(|&c| graph[c].iter().any(|(k, _)| component.binary_search(k).is_ok()))
+            .filter(|&c| {
+                graph[c]
+                    .iter()
+                    .any(|(k, _)| component.binary_search(k).is_ok())
+            })
             .collect();
         let inside = |k: usize| component.binary_search(&k).is_ok();
         // A sweep from an end of the curve, or from anywhere on a closed one.
@@ -172,7 +203,10 @@ impl Curves {
             let mut chosen: Vec<usize> = Vec::new();
             for &(k, _) in order.iter().filter(|&&(k, _)| k < first_corner) {
                 let row = rows[k];
-                let free = chosen.iter().rev().all(|&c| distance(rows[c], row) >= separation)
+                let free = chosen
+                    .iter()
+                    .rev()
+                    .all(|&c| distance(rows[c], row) >= separation)
                     && self.rows[..before].iter().all(|&r| distance(r, row) >= dl);
                 if free {
                     chosen.push(k);
@@ -180,7 +214,13 @@ impl Curves {
             }
             let sources: Vec<usize> = anchors.iter().chain(&chosen).copied().collect();
             let edges = adjacent(graph, &sources, |k| inside(k) || anchors.contains(&k));
-            let row_of = |k: usize| if k < first_corner { rows[k] } else { self.rows[k - first_corner] };
+            let row_of = |k: usize| {
+                if k < first_corner {
+                    rows[k]
+                } else {
+                    self.rows[k - first_corner]
+                }
+            };
             let edges = without_triangles(edges, |a, b| distance(row_of(a), row_of(b)));
             let longest = edges
                 .iter()
@@ -203,7 +243,11 @@ impl Curves {
             }
         };
         for (a, b) in edges {
-            self.edges.push(CurveEdge::new(position(a) as u32, position(b) as u32, kind.cells));
+            self.edges.push(CurveEdge::new(
+                position(a) as u32,
+                position(b) as u32,
+                kind.cells,
+            ));
         }
     }
 
@@ -218,12 +262,17 @@ impl Curves {
                 cells[end as usize] = e.cells;
             }
         }
-        let free: Vec<usize> = (self.corners..self.rows.len()).filter(|&k| degree[k] == 1).collect();
+        let free: Vec<usize> = (self.corners..self.rows.len())
+            .filter(|&k| degree[k] == 1)
+            .collect();
         let mut pairs = Vec::new();
         for (x, &a) in free.iter().enumerate() {
             for &b in &free[..x] {
                 let joined = self.edges.iter().any(|e| e.ends == [b as u32, a as u32]);
-                let d = analysis.places.squared_distance(self.rows[a], self.rows[b]).sqrt();
+                let d = analysis
+                    .places
+                    .squared_distance(self.rows[a], self.rows[b])
+                    .sqrt();
                 if cells[a] == cells[b] && d <= JOIN * dl && !joined {
                     pairs.push((d, b, a));
                 }
@@ -234,7 +283,8 @@ impl Curves {
             if degree[a] == 1 && degree[b] == 1 {
                 degree[a] += 1;
                 degree[b] += 1;
-                self.edges.push(CurveEdge::new(a as u32, b as u32, cells[a]));
+                self.edges
+                    .push(CurveEdge::new(a as u32, b as u32, cells[a]));
             }
         }
     }
@@ -247,9 +297,18 @@ fn thin<S: Scalar>(
     spacing: f64,
     role: impl Fn(Role) -> bool,
 ) -> Vec<usize> {
-    let mut rows: Vec<usize> = (0..analysis.roles.len()).filter(|&i| role(analysis.roles[i])).collect();
-    rows.sort_by(|&a, &b| analysis.offsets[a].total_cmp(&analysis.offsets[b]).then(a.cmp(&b)));
-    let slack = rows.iter().map(|&r| analysis.offsets[r]).fold(0.0, f64::max);
+    let mut rows: Vec<usize> = (0..analysis.roles.len())
+        .filter(|&i| role(analysis.roles[i]))
+        .collect();
+    rows.sort_by(|&a, &b| {
+        analysis.offsets[a]
+            .total_cmp(&analysis.offsets[b])
+            .then(a.cmp(&b))
+    });
+    let slack = rows
+        .iter()
+        .map(|&r| analysis.offsets[r])
+        .fold(0.0, f64::max);
     let mut blocked = vec![false; analysis.roles.len()];
     let mut near = Vec::new();
     let mut kept = Vec::new();
@@ -258,7 +317,11 @@ fn thin<S: Scalar>(
             continue;
         }
         kept.push(row);
-        analyzer.oracle.within(row, S::of(spacing + slack + analysis.offsets[row]), &mut near);
+        analyzer.oracle.within(
+            row,
+            S::of(spacing + slack + analysis.offsets[row]),
+            &mut near,
+        );
         for x in &near {
             if role(analysis.roles[x.index])
                 && analysis.places.squared_distance(row, x.index) < spacing * spacing
@@ -362,12 +425,24 @@ fn without_triangles(
     mut edges: Vec<(usize, usize)>,
     length: impl Fn(usize, usize) -> f64,
 ) -> Vec<(usize, usize)> {
-    edges.sort_by(|&(a, b), &(c, d)| length(a, b).total_cmp(&length(c, d)).then((a, b).cmp(&(c, d))));
+    edges.sort_by(|&(a, b), &(c, d)| {
+        length(a, b)
+            .total_cmp(&length(c, d))
+            .then((a, b).cmp(&(c, d)))
+    });
     let mut kept: Vec<(usize, usize)> = Vec::new();
     for (a, b) in edges {
         let around = |v: usize| -> Vec<usize> {
             kept.iter()
-                .filter_map(|&(p, q)| if p == v { Some(q) } else if q == v { Some(p) } else { None })
+                .filter_map(|&(p, q)| {
+                    if p == v {
+                        Some(q)
+                    } else if q == v {
+                        Some(p)
+                    } else {
+                        None
+                    }
+                })
                 .collect()
         };
         let other = around(b);

@@ -18,6 +18,8 @@ pub struct StratifyOptions {
     pub tri_eps: f64,
     /// Seed of the landmark selection.
     pub seed: u64,
+    /// Rows that are landmarks whatever their separation.
+    pub extra: Vec<usize>,
 }
 
 /// What the stratification counted.
@@ -93,7 +95,16 @@ pub fn stratify<S: Scalar>(
     let analysis = &*analysis;
     let places = &analysis.places;
     let curves = Curves::new(analyzer, analysis, options.dl);
-    let mut refs = references(analyzer, analysis, &curves.rows.iter().copied().filter(|&r| analysis.radii[r] > 0.0).collect::<Vec<_>>());
+    let mut refs = references(
+        analyzer,
+        analysis,
+        &curves
+            .rows
+            .iter()
+            .copied()
+            .filter(|&r| analysis.radii[r] > 0.0)
+            .collect::<Vec<_>>(),
+    );
     let least = curves
         .rows
         .iter()
@@ -102,13 +113,31 @@ pub fn stratify<S: Scalar>(
         .fold(f64::INFINITY, f64::min);
     if least.is_finite() {
         let known: Vec<usize> = refs.iter().map(|r| r.row).collect();
-        refs.extend(more_references(analyzer, analysis, REFERENCE_SPACING * least, &known));
+        refs.extend(more_references(
+            analyzer,
+            analysis,
+            REFERENCE_SPACING * least,
+            &known,
+        ));
     }
     let graph = CellGraph::new(analyzer, analysis, &refs);
 
     let mut rows = curves.rows.clone();
     let candidates = free_of_edges(analyzer, analysis, &curves);
-    rows.extend(selector.select(analyzer.oracle, &candidates, &curves.rows, options.dl, options.seed)?);
+    let taken = &curves.rows;
+    let chosen = selector.select(
+        analyzer.oracle,
+        &candidates,
+        taken,
+        options.dl,
+        options.seed,
+    )?;
+    rows.extend(&chosen);
+    for &row in &options.extra {
+        if row < n && analysis.roles[row] == Role::Regular && !chosen.contains(&row) {
+            rows.push(row);
+        }
+    }
     let mut strata = vec![2u8; rows.len()];
     strata[..curves.rows.len()].fill(1);
     strata[..curves.corners].fill(0);
@@ -122,9 +151,13 @@ pub fn stratify<S: Scalar>(
     let mut hits = vec![0u32; contacts.groups.len()];
     let mut touched: Vec<u32> = Vec::new();
     let mut neighborhoods = Vec::with_capacity(rows.len());
-    let starts = (curves.rows.len()..rows.len())
-        .map(|k| (k, None))
-        .chain(contacts.groups.iter().enumerate().map(|(g, group)| (group.landmark, Some(g))));
+    let starts = (curves.rows.len()..rows.len()).map(|k| (k, None)).chain(
+        contacts
+            .groups
+            .iter()
+            .enumerate()
+            .map(|(g, group)| (group.landmark, Some(g))),
+    );
     for (center, group) in starts {
         let origin = places.point(rows[center]);
         let mut members: Vec<u32> = Vec::new();
@@ -183,16 +216,14 @@ pub fn stratify<S: Scalar>(
     pairs.dedup();
     let distances = SparseDistances::new(
         rows.len(),
-        pairs
-            .iter()
-            .map(|&(a, b)| {
-                let (p, q) = (rows[a as usize], rows[b as usize]);
-                let d = match metric {
-                    Some(metric) => metric.distance(p, q),
-                    None => S::of(places.squared_distance(p, q).sqrt()),
-                };
-                (a, b, d)
-            }),
+        pairs.iter().map(|&(a, b)| {
+            let (p, q) = (rows[a as usize], rows[b as usize]);
+            let d = match metric {
+                Some(metric) => metric.distance(p, q),
+                None => S::of(places.squared_distance(p, q).sqrt()),
+            };
+            (a, b, d)
+        }),
     )?;
     let counts = StratifyCounts {
         landmarks: rows.len(),
@@ -230,7 +261,9 @@ fn free_of_edges<S: Scalar>(
         let [a, b] = e.ends.map(|k| curves.rows[k as usize]);
         let length = places.squared_distance(a, b);
         let slack = analysis.offsets[a];
-        analyzer.oracle.within(a, S::of(length.sqrt() + slack), &mut near);
+        analyzer
+            .oracle
+            .within(a, S::of(length.sqrt() + slack), &mut near);
         for x in &near {
             if places.squared_distance(a, x.index) + places.squared_distance(b, x.index) < length {
                 barred[x.index] = true;
@@ -270,7 +303,9 @@ impl Contacts {
         for (landmark, &row) in curves.rows.iter().enumerate() {
             let reference = refs.iter().find(|r| r.row == row);
             let reach = CONTACT_REACH * dl;
-            analyzer.oracle.within(row, S::of(reach + analysis.offsets[row]), &mut near);
+            analyzer
+                .oracle
+                .within(row, S::of(reach + analysis.offsets[row]), &mut near);
             let mut cells: Vec<(u8, f64, u32)> = near
                 .iter()
                 .filter(|x| analysis.roles[x.index] == Role::Regular)
@@ -282,7 +317,12 @@ impl Contacts {
                     Some((label, places.squared_distance(row, x.index), x.index as u32))
                 })
                 .collect();
-            cells.sort_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal).then(a.2.cmp(&b.2)));
+            cells.sort_by(|a, b| {
+                (a.0, a.1)
+                    .partial_cmp(&(b.0, b.1))
+                    .unwrap_or(std::cmp::Ordering::Equal)
+                    .then(a.2.cmp(&b.2))
+            });
             for cell in cells.chunk_by(|a, b| a.0 == b.0) {
                 groups.push(ContactGroup {
                     landmark,

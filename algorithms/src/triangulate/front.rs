@@ -85,7 +85,10 @@ pub(super) struct Front<'a, S: Scalar> {
 impl<S: Scalar> Front<'_, S> {
     pub(super) fn distance(&self, a: u32, b: u32) -> f64 {
         // Neighborhoods keep the distances of all their pairs.
-        self.input.distances.get(a, b).map_or(f64::INFINITY, Scalar::as_f64)
+        self.input
+            .distances
+            .get(a, b)
+            .map_or(f64::INFINITY, Scalar::as_f64)
     }
 
     /// Makes `position` answer for these members.
@@ -111,7 +114,10 @@ impl<S: Scalar> Front<'_, S> {
 
     /// Cells that meet in a chain edge; `None` for any other edge.
     pub(super) fn cells(&self, a: u32, b: u32) -> Option<u8> {
-        self.curve[a as usize].iter().find(|x| x.0 == b).map(|x| x.1)
+        self.curve[a as usize]
+            .iter()
+            .find(|x| x.0 == b)
+            .map(|x| x.1)
     }
 
     pub(super) fn holds(&self, sorted: [u32; 3]) -> bool {
@@ -223,7 +229,10 @@ impl Triangulator<'_> {
     /// Those of [`StratifiedLandmarks::check`]; [`Error::Law`] for a chart that is not finite.
     ///
     /// O(L k^2) for L landmarks with k members in a neighborhood, plus the charts.
-    pub fn triangulate<S: Scalar>(&self, input: &StratifiedLandmarks<S>) -> Result<Triangulation, Error> {
+    pub fn triangulate<S: Scalar>(
+        &self,
+        input: &StratifiedLandmarks<S>,
+    ) -> Result<Triangulation, Error> {
         input.check()?;
         let count = input.strata.len();
         let mut curve = vec![Vec::new(); count];
@@ -266,11 +275,18 @@ impl Triangulator<'_> {
         };
         run.all()?;
         let (counts, incomplete) = (run.counts, std::mem::take(&mut run.incomplete));
-        let triangles = front.triangles.iter().copied().filter(|t| t[0] != u32::MAX).collect();
+        let triangles = front
+            .triangles
+            .iter()
+            .copied()
+            .filter(|t| t[0] != u32::MAX)
+            .collect();
         let edges: Vec<CurveEdge> = input.curve_edges.clone();
         Ok(Triangulation {
             complex: Complex::new(count, triangles, edges)?,
-            dropped: (0..count as u32).filter(|&v| front.dropped[v as usize]).collect(),
+            dropped: (0..count as u32)
+                .filter(|&v| front.dropped[v as usize])
+                .collect(),
             incomplete,
             counts,
         })
@@ -336,7 +352,10 @@ impl<S: Scalar> Run<'_, '_, S> {
             }
         }
         open.extend(curve_open);
-        self.incomplete = open.into_iter().map(|(v, _)| Incomplete { landmark: v }).collect();
+        self.incomplete = open
+            .into_iter()
+            .map(|(v, _)| Incomplete { landmark: v })
+            .collect();
         self.incomplete.sort_unstable_by_key(|i| i.landmark);
         self.incomplete.dedup();
         Ok(())
@@ -396,7 +415,12 @@ impl<S: Scalar> Run<'_, '_, S> {
             return Ok(false);
         }
         let cell = |u: &u32| self.front.input.strata[*u as usize] == 2;
-        let droppable: Vec<u32> = members.iter().copied().filter(cell).take(1 + DROPS).collect();
+        let droppable: Vec<u32> = members
+            .iter()
+            .copied()
+            .filter(cell)
+            .take(1 + DROPS)
+            .collect();
         for u in droppable {
             for reach in [0, 8] {
                 if self.attempt(v, k, &members, reach, Some(u))? {
@@ -441,7 +465,10 @@ impl<S: Scalar> Run<'_, '_, S> {
         touched.sort_unstable();
         touched.dedup();
         order.retain(|m| touched.binary_search(m).is_ok() && *m != v);
-        let far: Vec<u32> = touched.into_iter().filter(|m| !members.contains(m)).collect();
+        let far: Vec<u32> = touched
+            .into_iter()
+            .filter(|m| !members.contains(m))
+            .collect();
         order.extend(far);
         let mut good = drop == Some(v) || self.visit(k)?;
         for u in order {
@@ -457,7 +484,8 @@ impl<S: Scalar> Run<'_, '_, S> {
             self.counts.repairs += 1;
             // Landmarks that gained triangles and are not visited yet are on the front.
             let reached: Vec<u32> = self.front.log.iter().flat_map(|l| l.1).collect();
-            self.queue.extend(reached.into_iter().filter(|&u| !self.done[u as usize]));
+            self.queue
+                .extend(reached.into_iter().filter(|&u| !self.done[u as usize]));
         } else {
             self.front.roll_back(0);
             if let Some(u) = drop {

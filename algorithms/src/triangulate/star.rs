@@ -23,7 +23,12 @@ pub(super) fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i8 {
 }
 
 fn bounds(places: &[[f64; 2]; 3]) -> [f64; 4] {
-    let mut b = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+    let mut b = [
+        f64::INFINITY,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NEG_INFINITY,
+    ];
     for p in places {
         b[0] = b[0].min(p[0]);
         b[1] = b[1].min(p[1]);
@@ -41,7 +46,12 @@ impl<'a> Patch<'a> {
         kept: &'a mut Vec<u32>,
     ) -> Result<Self, Error> {
         kept.clear();
-        kept.extend(near.members.iter().copied().filter(|&m| !front.dropped[m as usize]));
+        kept.extend(
+            near.members
+                .iter()
+                .copied()
+                .filter(|&m| !front.dropped[m as usize]),
+        );
         let members: &'a [u32] = kept;
         let k = members.len();
         let mut distances = vec![0.0; k * k];
@@ -61,7 +71,11 @@ impl<'a> Patch<'a> {
                 detail: format!("{} coordinates for {k} points", chart.coordinates.len()),
             });
         }
-        let places: Vec<[f64; 2]> = chart.coordinates.chunks_exact(2).map(|c| [c[0], c[1]]).collect();
+        let places: Vec<[f64; 2]> = chart
+            .coordinates
+            .chunks_exact(2)
+            .map(|c| [c[0], c[1]])
+            .collect();
         front.locate(members);
         let mut patch = Self {
             members,
@@ -105,7 +119,8 @@ impl<'a> Patch<'a> {
     fn across(&self, a: u32, b: u32) -> impl Iterator<Item = u32> + '_ {
         self.triangles.iter().filter_map(move |t| {
             let on = t.corners.contains(&a) && t.corners.contains(&b);
-            on.then(|| t.corners.iter().copied().find(|&c| c != a && c != b)).flatten()
+            on.then(|| t.corners.iter().copied().find(|&c| c != a && c != b))
+                .flatten()
         })
     }
 
@@ -135,7 +150,12 @@ impl<'a> Patch<'a> {
             .iter()
             .filter(|t| t.corners.contains(&center))
             .flat_map(|t| t.corners)
-            .chain(self.walls.iter().filter(|w| w.0 == 0).map(|w| self.members[w.1]))
+            .chain(
+                self.walls
+                    .iter()
+                    .filter(|w| w.0 == 0)
+                    .map(|w| self.members[w.1]),
+            )
             .filter(|&c| c != center)
             .collect();
         ends.sort_unstable();
@@ -176,7 +196,12 @@ impl<'a> Patch<'a> {
 
     /// The best admissible corner of a triangle on the edge from the center to `x`, on the
     /// side away from `beyond`.
-    fn apex<S: Scalar>(&self, front: &Front<'_, S>, x: usize, beyond: Option<usize>) -> Option<usize> {
+    fn apex<S: Scalar>(
+        &self,
+        front: &Front<'_, S>,
+        x: usize,
+        beyond: Option<usize>,
+    ) -> Option<usize> {
         let (p, q) = (self.places[0], self.places[x]);
         let taken = beyond.map(|b| turn(p, q, self.places[b]));
         let edge = front.distance(self.members[0], self.members[x]);
@@ -206,9 +231,7 @@ impl<'a> Patch<'a> {
         let (u, v) = (self.members[a], self.members[b]);
         let total = front.count(u, v);
         match front.cells(u, v) {
-            Some(cells) => {
-                total < cells as usize && self.across(u, v).next().is_none()
-            }
+            Some(cells) => total < cells as usize && self.across(u, v).next().is_none(),
             None => {
                 total < 2
                     && !front.shortcut(u, v)

@@ -1,0 +1,709 @@
+//! From a point cloud to a verified surface: the parts put together with good defaults.
+
+use crosscap_algorithms::certificate::{Certificate, CertificateOptions, Verdict, certify};
+use crosscap_algorithms::chart::ClassicalScaling;
+use crosscap_algorithms::dimension::PrincipalComponents;
+use crosscap_algorithms::homology::{Homology, homology};
+use crosscap_algorithms::landmarks::RandomGreedy;
+use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
+use crosscap_algorithms::predicate::PlanarPredicate;
+use crosscap_algorithms::singularity::TwoPlanes;
+use crosscap_algorithms::stratify::{
+    Analysis, AnalysisOptions, Analyzer, Role, Stratification, StratifyCounts, StratifyOptions,
+    stratify,
+};
+use crosscap_algorithms::triangulate::{
+    LargestAngle, Triangulation, TriangulationCounts, Triangulator,
+};
+use crosscap_backends::euclidean::EuclideanOracle;
+use crosscap_backends::parallel::Threads;
+use crosscap_core::{
+    CompatibilityTest, Complex, CurveEdge, DimensionEstimator, Error, LandmarkSelector, LocalChart,
+    Mesh, MetricSpace, Neighbor, NeighborhoodOracle, PointCloud, Scalar, SingularityModel,
+    StratifiedLandmarks, TriangleRule,
+};
+use serde::Serialize;
+use std::fmt;
+use std::str::FromStr;
+use std::time::Instant;
+
+/// Which algorithm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Cells cut along the curves, repairs, refinement: what the measurements say works.
+    #[default]
+    Cells,
+    /// The algorithm of Martin & Watson (2011) to the letter, for comparison.
+    Paper,
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Cells => "cells",
+            Self::Paper => "paper",
+        })
+    }
+}
+
+impl FromStr for Method {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self, Error> {
+        match name {
+            "cells" => Ok(Self::Cells),
+            "paper" => Ok(Self::Paper),
+            other => Err(Error::Parameter {
+                name: "method",
+                value: other.into(),
+                expected: "cells or paper".into(),
+            }),
+        }
+    }
+}
+
+/// Parameters of a reconstruction, all lengths in the unit of the data.
+#[derive(Clone, Debug, Serialize)]
+pub struct Parameters {
+    /// Radius of the neighborhoods in which dimension and crossings are looked for (strict).
+    pub eps: f64,
+    /// Radius of the charts (strict); 3 dl when left out.
+    pub tri_eps: Option<f64>,
+    /// Dimension tolerance: share of the variance that may lie outside the dimension (strict).
+    pub dt: f64,
+    /// Fit tolerance: largest root mean squared distance of a neighborhood to its model.
+    pub dp: f64,
+    /// Curve tolerance eps_p: a point closer than this to both sheets is on the curve (strict).
+    pub ep: f64,
+    /// Landmark separation.
+    pub dl: f64,
+    /// Seed of the landmark selection.
+    pub seed: u64,
+    /// Take every point as 2-dimensional and look for no crossing.
+    pub surface: bool,
+    /// Rows of points on the boundary.
+    pub boundary: Vec<usize>,
+    /// Which algorithm.
+    pub method: Method,
+    /// Number of threads, all processors when left out; changes no result.
+    pub threads: Option<usize>,
+}
+
+impl Parameters {
+    /// Parameters with the given radius and separation; dt 0.05, dp eps/5, eps_p eps/10.
+    pub fn new(eps: f64, dl: f64) -> Self {
+        Self {
+            eps,
+            tri_eps: None,
+            dt: 0.05,
+            dp: eps / 5.0,
+            ep: eps / 10.0,
+            dl,
+            seed: 0,
+            surface: false,
+            boundary: Vec::new(),
+            method: Method::default(),
+            threads: None,
+        }
+    }
+
+    /// The same, taking every point as 2-dimensional.
+    pub fn surface(mut self) -> Self {
+        self.surface = true;
+        self
+    }
+
+    /// Radius of the charts.
+    pub fn chart_radius(&self) -> f64 {
+        self.tri_eps.unwrap_or(CHART_SEPARATIONS * self.dl)
+    }
+
+    /// Checks every parameter alone and against the others.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for the first that has no meaning.
+    pub fn check(&self) -> Result<(), Error> {
+        let refuse = |name: &'static str, value: f64, expected: &str| {
+            Err(Error::Parameter {
+                name,
+                value: value.to_string(),
+                expected: expected.into(),
+            })
+        };
+        let lengths = [
+            ("eps", self.eps),
+            ("tri-eps", self.chart_radius()),
+            ("dp", self.dp),
+            ("ep", self.ep),
+            ("dl", self.dl),
+        ];
+        for (name, value) in lengths {
+            if !(value > 0.0 && value.is_finite()) {
+                return refuse(name, value, "a positive length");
+            }
+        }
+        if !(self.dt > 0.0 && self.dt < 1.0) {
+            return refuse("dt", self.dt, "a number strictly between 0 and 1");
+        }
+        if self.chart_radius() <= self.dl {
+            return refuse(
+                "tri-eps",
+                self.chart_radius(),
+                "more than dl: a chart of one landmark holds no triangle",
+            );
+        }
+        if !self.surface && self.ep >= self.eps {
+            return refuse(
+                "ep",
+                self.ep,
+                "less than eps: the band of the curve lies inside the neighborhood",
+            );
+        }
+        Ok(())
+    }
+}
+
+/// Charts reach this many landmark separations.
+const CHART_SEPARATIONS: f64 = 3.0;
+/// A triangle that strays farther than this many dl from the points gets another landmark.
+const STRAY: f64 = 0.5;
+/// A landmark that is added keeps at least this many dl to the others.
+const ADDED_SEPARATION: f64 = 0.4;
+/// Rounds of refinement.
+const REFINEMENTS: usize = 4;
+
+/// A step of the way, for progress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stage {
+    /// Building the neighborhood oracle.
+    Index,
+    /// Dimension and crossings at every point.
+    Neighborhoods,
+    /// Landmarks, chains and cells.
+    Landmarks,
+    /// Stars and repairs.
+    Triangulation,
+    /// Betti numbers, torsion, pieces.
+    Homology,
+    /// The verdict.
+    Certificate,
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Index => "index",
+            Self::Neighborhoods => "neighborhoods",
+            Self::Landmarks => "landmarks",
+            Self::Triangulation => "triangulation",
+            Self::Homology => "homology",
+            Self::Certificate => "certificate",
+        })
+    }
+}
+
+/// Counts and times of a reconstruction.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Version of this program.
+    pub version: &'static str,
+    /// The parameters.
+    pub parameters: Parameters,
+    /// Points of the input.
+    pub points: usize,
+    /// N.
+    pub dimension: usize,
+    /// Points that coincide with an earlier one and were left out.
+    pub duplicates: usize,
+    /// Mean number of points in a neighborhood.
+    pub mean_neighbors: f64,
+    /// Points whose neighborhood is not 2-dimensional.
+    pub candidates: usize,
+    /// Points found on curves.
+    pub curve_points: usize,
+    /// Points whose neighborhood no model explained.
+    pub unexplained: usize,
+    /// Landmarks, chains, cells.
+    pub landmarks: StratifyCounts,
+    /// Landmarks added where triangles strayed from the points.
+    pub added_landmarks: usize,
+    /// Visits and repairs.
+    pub triangulation: TriangulationCounts,
+    /// Seconds spent in each stage, in order.
+    pub seconds: Vec<(Stage, f64)>,
+}
+
+/// What a reconstruction yields, verified or not.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The mesh; vertices on double curves lie on the curve, beside their input point.
+    pub mesh: Mesh,
+    /// Betti numbers and torsion.
+    pub homology: Homology,
+    /// Every level of validity with its violations.
+    pub certificate: Certificate,
+    /// What the surface is, where the crossing can be undone.
+    pub pieces: Result<Pieces, PiecesError>,
+    /// Counts and times.
+    pub report: Report,
+    /// Where the triangulation could not be completed, with the parameter to change.
+    pub failures: Vec<Error>,
+}
+
+impl Outcome {
+    /// Whether the mesh may be handed over as good.
+    pub fn is_verified(&self) -> bool {
+        self.failures.is_empty() && matches!(self.certificate.verdict(), Verdict::Verified)
+    }
+}
+
+/// Called at the beginning of every stage.
+type StageObserver = Box<dyn FnMut(Stage)>;
+
+/// A reconstruction put together from parts, each of which can be replaced.
+///
+/// ```
+/// use crosscap::prelude::*;
+/// let sample = SampleSurface::find("sphere")?.sample(&Sampling::new(4000, 7))?;
+/// let outcome = Pipeline::new(Parameters::new(0.4, 0.2).surface())?.reconstruct(&sample.points)?;
+/// assert!(outcome.is_verified());
+/// assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Pipeline<S: Scalar = f64> {
+    parameters: Parameters,
+    models: Vec<Box<dyn SingularityModel>>,
+    estimator: Box<dyn DimensionEstimator<Scalar = S>>,
+    selector: Box<dyn LandmarkSelector<Scalar = S>>,
+    chart: Box<dyn LocalChart>,
+    test: Box<dyn CompatibilityTest>,
+    rule: Box<dyn TriangleRule>,
+    metric: Option<Box<dyn MetricSpace<Scalar = S>>>,
+    observer: StageObserver,
+}
+
+impl<S: Scalar> Pipeline<S> {
+    /// The default parts for these parameters: PCA, two planes, random landmarks, classical
+    /// scaling, exact planar predicate, largest angle.
+    ///
+    /// # Errors
+    /// Those of [`Parameters::check`].
+    pub fn new(parameters: Parameters) -> Result<Self, Error> {
+        parameters.check()?;
+        Ok(Self {
+            models: vec![Box::new(TwoPlanes::new(parameters.dp, parameters.ep)?)],
+            estimator: Box::new(PrincipalComponents::new(parameters.dt)?),
+            selector: Box::new(RandomGreedy::new()),
+            chart: Box::new(ClassicalScaling),
+            test: Box::new(PlanarPredicate),
+            rule: Box::new(LargestAngle),
+            metric: None,
+            observer: Box::new(|_| {}),
+            parameters,
+        })
+    }
+
+    /// Singularity models that compete instead of two planes alone.
+    pub fn models(mut self, models: Vec<Box<dyn SingularityModel>>) -> Self {
+        self.models = models;
+        self
+    }
+
+    /// Another dimension estimator.
+    pub fn estimator(mut self, estimator: Box<dyn DimensionEstimator<Scalar = S>>) -> Self {
+        self.estimator = estimator;
+        self
+    }
+
+    /// Another landmark selector.
+    pub fn selector(mut self, selector: Box<dyn LandmarkSelector<Scalar = S>>) -> Self {
+        self.selector = selector;
+        self
+    }
+
+    /// Another chart.
+    pub fn chart(mut self, chart: Box<dyn LocalChart>) -> Self {
+        self.chart = chart;
+        self
+    }
+
+    /// Another compatibility test.
+    pub fn compatibility(mut self, test: Box<dyn CompatibilityTest>) -> Self {
+        self.test = test;
+        self
+    }
+
+    /// Another order in which triangles are tried.
+    pub fn rule(mut self, rule: Box<dyn TriangleRule>) -> Self {
+        self.rule = rule;
+        self
+    }
+
+    /// Distances for the triangulation other than the Euclidean ones, on the rows of the input.
+    pub fn triangulation_metric(mut self, metric: Box<dyn MetricSpace<Scalar = S>>) -> Self {
+        self.metric = Some(metric);
+        self
+    }
+
+    /// Calls `observer` at the beginning of every stage.
+    pub fn on_stage(mut self, observer: impl FnMut(Stage) + 'static) -> Self {
+        self.observer = Box::new(observer);
+        self
+    }
+
+    /// Reconstructs the surface that `cloud` was sampled from.
+    ///
+    /// # Errors
+    /// Input that cannot be worked on ([`Error::is_input`]), or a stage that failed before there was
+    /// a mesh. A mesh that is not good comes back in the outcome, unverified.
+    pub fn reconstruct(&mut self, cloud: &PointCloud<S>) -> Result<Outcome, Error> {
+        let mut clock = Clock::default();
+        let parameters = self.parameters.clone();
+        self.enter(Stage::Index, &mut clock);
+        if cloud.dimension() < 2 {
+            return Err(Error::Shape {
+                found: format!("points of R^{}", cloud.dimension()),
+                expected: "at least 2 coordinates".into(),
+            });
+        }
+        let kept = first_of_each(cloud);
+        let duplicates = cloud.len() - kept.len();
+        let (cloud, rows) = if duplicates == 0 || self.metric.is_some() {
+            (cloud.clone(), (0..cloud.len()).collect())
+        } else {
+            (cloud.select(&kept), kept)
+        };
+        if cloud.len() < LEAST_POINTS {
+            return Err(Error::Shape {
+                found: format!("{} different points", cloud.len()),
+                expected: format!("at least {LEAST_POINTS}"),
+            });
+        }
+        let boundary = boundary_rows(&parameters.boundary, &rows, cloud.len() + duplicates)?;
+        let threads = Threads::new(parameters.threads.unwrap_or(0))?;
+        let oracle = EuclideanOracle::new(cloud.clone())?;
+
+        self.enter(Stage::Neighborhoods, &mut clock);
+        let analyzer = Analyzer {
+            cloud: &cloud,
+            metric: &oracle,
+            oracle: &oracle,
+            estimator: self.estimator.as_ref(),
+            models: &self.models,
+            execute: &threads,
+        };
+        let analysis = analyzer.analyze(&AnalysisOptions {
+            eps: parameters.eps,
+            surface: parameters.surface,
+            boundary,
+        })?;
+
+        let mut extra: Vec<usize> = Vec::new();
+        let mut observer = std::mem::replace(&mut self.observer, Box::new(|_| {}));
+        let (analysis, stratification, triangulation) = loop {
+            clock.enter(Stage::Landmarks);
+            observer(Stage::Landmarks);
+            let mut analysis = analysis.clone();
+            let stratification = stratify(
+                &analyzer,
+                &mut analysis,
+                self.metric.as_deref(),
+                self.selector.as_ref(),
+                &StratifyOptions {
+                    dl: parameters.dl,
+                    tri_eps: parameters.chart_radius(),
+                    seed: parameters.seed,
+                    extra: extra.clone(),
+                },
+            )?;
+            clock.enter(Stage::Triangulation);
+            observer(Stage::Triangulation);
+            let triangulation = self.triangulator().triangulate(&stratification.waist)?;
+            let before = extra.len();
+            if clock.rounds(Stage::Triangulation) <= REFINEMENTS {
+                add_where_astray(
+                    &oracle,
+                    &analysis,
+                    &stratification,
+                    &triangulation.complex,
+                    parameters.dl,
+                    &mut extra,
+                );
+            }
+            if extra.len() == before {
+                break (analysis, stratification, triangulation);
+            }
+        };
+        self.observer = observer;
+
+        self.enter(Stage::Homology, &mut clock);
+        let mesh = mesh_of(&triangulation.complex, &stratification, &analysis, &rows)?;
+        let betti = homology(&mesh.complex)?;
+        let parts = pieces(&mesh);
+        self.enter(Stage::Certificate, &mut clock);
+        let points = cloud.cast::<f64>();
+        let unused: Vec<usize> = triangulation
+            .dropped
+            .iter()
+            .map(|&k| rows[stratification.rows[k as usize]])
+            .collect();
+        let certificate = certify(
+            &mesh,
+            &CertificateOptions {
+                points: Some(&points),
+                landmark_separation: Some(parameters.dl),
+                unused_landmarks: &unused,
+                closed: parameters.boundary.is_empty(),
+                ..CertificateOptions::default()
+            },
+        );
+        let curve_points = analysis
+            .roles
+            .iter()
+            .filter(|r| matches!(r, Role::Curve | Role::Corner))
+            .count();
+        let report = Report {
+            version: env!("CARGO_PKG_VERSION"),
+            points: cloud.len() + duplicates,
+            dimension: cloud.dimension(),
+            duplicates,
+            mean_neighbors: analysis.mean_neighbors,
+            candidates: analysis.candidates,
+            curve_points,
+            unexplained: analysis.unexplained.len(),
+            landmarks: stratification.counts,
+            added_landmarks: extra.len(),
+            triangulation: triangulation.counts,
+            seconds: clock.finish(),
+            parameters,
+        };
+        Ok(Outcome {
+            failures: failures(&triangulation, &stratification, &rows),
+            mesh,
+            homology: betti,
+            certificate,
+            pieces: parts,
+            report,
+        })
+    }
+
+    /// Triangulates a waist that came from elsewhere: measured distances, another program.
+    ///
+    /// # Errors
+    /// Those of [`Triangulator::triangulate`].
+    pub fn triangulate(&self, waist: &StratifiedLandmarks<S>) -> Result<Triangulation, Error> {
+        self.triangulator().triangulate(waist)
+    }
+
+    fn triangulator(&self) -> Triangulator<'_> {
+        Triangulator {
+            chart: self.chart.as_ref(),
+            test: self.test.as_ref(),
+            rule: self.rule.as_ref(),
+            largest_circumradius: f64::INFINITY,
+            repair: true,
+        }
+    }
+
+    fn enter(&mut self, stage: Stage, clock: &mut Clock) {
+        clock.enter(stage);
+        (self.observer)(stage);
+    }
+}
+
+/// Fewest different points that are worked on.
+const LEAST_POINTS: usize = 8;
+
+/// The first row of every place, in order.
+fn first_of_each<S: Scalar>(cloud: &PointCloud<S>) -> Vec<usize> {
+    let order = |a: usize, b: usize| {
+        let pairs = cloud.point(a).iter().zip(cloud.point(b));
+        pairs
+            .map(|(x, y)| x.as_f64().total_cmp(&y.as_f64()))
+            .find(|o| o.is_ne())
+            .unwrap_or(std::cmp::Ordering::Equal)
+    };
+    let mut rows: Vec<usize> = (0..cloud.len()).collect();
+    rows.sort_by(|&a, &b| order(a, b).then(a.cmp(&b)));
+    rows.dedup_by(|b, a| cloud.point(*a) == cloud.point(*b));
+    rows.sort_unstable();
+    rows
+}
+
+/// Positions of the boundary rows among the kept ones.
+fn boundary_rows(boundary: &[usize], rows: &[usize], points: usize) -> Result<Vec<usize>, Error> {
+    let mut out = Vec::with_capacity(boundary.len());
+    for &row in boundary {
+        if row >= points {
+            return Err(Error::Index {
+                what: "boundary row",
+                index: row,
+                limit: points,
+            });
+        }
+        if let Ok(at) = rows.binary_search(&row) {
+            out.push(at);
+        }
+    }
+    Ok(out)
+}
+
+/// Adds a landmark where the middle of a triangle or of an edge is far from every point: where
+/// the surface bends more than triangles of this size can follow.
+fn add_where_astray<S: Scalar>(
+    oracle: &EuclideanOracle<S>,
+    analysis: &Analysis,
+    stratification: &Stratification<S>,
+    complex: &Complex,
+    dl: f64,
+    extra: &mut Vec<usize>,
+) {
+    let place = |v: u32| analysis.places.point(stratification.rows[v as usize]);
+    let mut near: Vec<Neighbor<S>> = Vec::new();
+    let mut middle: Vec<S> = Vec::new();
+    for t in &complex.triangles {
+        let [a, b, c] = *t;
+        for corners in [&[a, b][..], &[a, c], &[b, c], &[a, b, c]] {
+            middle.clear();
+            middle.extend((0..analysis.places.dimension()).map(|k| {
+                let sum: f64 = corners.iter().map(|&v| place(v)[k]).sum();
+                S::of(sum / corners.len() as f64)
+            }));
+            let mut reach = STRAY * dl;
+            oracle.within_of(&middle, S::of(reach), &mut near);
+            if !near.is_empty() {
+                continue;
+            }
+            while near.is_empty() && reach < 8.0 * dl {
+                reach *= 1.5;
+                oracle.within_of(&middle, S::of(reach), &mut near);
+            }
+            let free = |row: usize| {
+                let limit = (ADDED_SEPARATION * dl).powi(2);
+                analysis.roles[row] == Role::Regular
+                    && stratification
+                        .rows
+                        .iter()
+                        .chain(extra.iter())
+                        .all(|&r| analysis.places.squared_distance(r, row) >= limit)
+            };
+            if let Some(row) = near.iter().map(|x| x.index).find(|&r| free(r)) {
+                extra.push(row);
+            }
+        }
+    }
+}
+
+/// The mesh of a triangulation: landmarks that were dropped leave no vertex.
+fn mesh_of<S: Scalar>(
+    complex: &Complex,
+    stratification: &Stratification<S>,
+    analysis: &Analysis,
+    rows: &[usize],
+) -> Result<Mesh, Error> {
+    let mut used = vec![false; complex.vertices];
+    for &v in complex
+        .triangles
+        .iter()
+        .flatten()
+        .chain(complex.curve_edges.iter().flat_map(|e| &e.ends))
+    {
+        used[v as usize] = true;
+    }
+    let kept: Vec<u32> = (0..complex.vertices as u32)
+        .filter(|&v| used[v as usize])
+        .collect();
+    let mut name = vec![0u32; complex.vertices];
+    for (k, &v) in kept.iter().enumerate() {
+        name[v as usize] = k as u32;
+    }
+    let triangles = complex
+        .triangles
+        .iter()
+        .map(|t| t.map(|v| name[v as usize]))
+        .collect();
+    let edges = complex
+        .curve_edges
+        .iter()
+        .map(|e| CurveEdge::new(name[e.ends[0] as usize], name[e.ends[1] as usize], e.cells))
+        .collect();
+    let landmark_rows: Vec<usize> = kept
+        .iter()
+        .map(|&v| stratification.rows[v as usize])
+        .collect();
+    Mesh::new(
+        Complex::new(kept.len(), triangles, edges)?,
+        analysis.places.select(&landmark_rows),
+        landmark_rows.iter().map(|&r| rows[r] as i64).collect(),
+    )
+}
+
+/// The stars that stayed open, as errors.
+fn failures<S: Scalar>(
+    triangulation: &Triangulation,
+    stratification: &Stratification<S>,
+    rows: &[usize],
+) -> Vec<Error> {
+    triangulation
+        .incomplete
+        .iter()
+        .map(|open| {
+            let landmark = open.landmark as usize;
+            let on_curve = stratification.waist.strata[landmark] < 2;
+            Error::Triangulation {
+                reason: if on_curve {
+                    "a cell at a curve could not be filled".into()
+                } else {
+                    "a star could not be closed".into()
+                },
+                landmark,
+                point: Some(rows[stratification.rows[landmark]]),
+                parameter: if on_curve {
+                    "ep, eps or dl"
+                } else {
+                    "dl or tri-eps"
+                },
+            }
+        })
+        .collect()
+}
+
+/// Seconds by stage.
+#[derive(Default)]
+struct Clock {
+    stages: Vec<(Stage, f64, usize)>,
+    running: Option<(Stage, Instant)>,
+}
+
+impl Clock {
+    fn enter(&mut self, stage: Stage) {
+        self.stop();
+        self.running = Some((stage, Instant::now()));
+    }
+
+    fn stop(&mut self) {
+        if let Some((stage, since)) = self.running.take() {
+            let spent = since.elapsed().as_secs_f64();
+            match self.stages.iter_mut().find(|s| s.0 == stage) {
+                Some(s) => {
+                    s.1 += spent;
+                    s.2 += 1;
+                }
+                None => self.stages.push((stage, spent, 1)),
+            }
+        }
+    }
+
+    /// How often a stage was entered, now included.
+    fn rounds(&self, stage: Stage) -> usize {
+        let now = self.running.is_some_and(|(s, _)| s == stage);
+        usize::from(now) + self.stages.iter().find(|s| s.0 == stage).map_or(0, |s| s.2)
+    }
+
+    fn finish(mut self) -> Vec<(Stage, f64)> {
+        self.stop();
+        self.stages.into_iter().map(|(s, t, _)| (s, t)).collect()
+    }
+}
