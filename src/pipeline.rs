@@ -166,7 +166,7 @@ impl Parameters {
 
 /// Charts reach this many landmark separations.
 const CHART_SEPARATIONS: f64 = 3.0;
-/// A triangle that strays farther than this many dl from the points gets another landmark.
+/// A triangle whose middle strays farther than this many dl from the surface gets another landmark.
 const STRAY: f64 = 0.5;
 /// A landmark that is added keeps at least this many dl to the others.
 const ADDED_SEPARATION: f64 = 0.4;
@@ -400,6 +400,7 @@ impl<S: Scalar> Pipeline<S> {
             boundary,
         })?;
 
+        let stray = stray_limit(&oracle, parameters.dl);
         let mut extra: Vec<usize> = Vec::new();
         let mut observer = std::mem::replace(&mut self.observer, Box::new(|_| {}));
         let (analysis, stratification, triangulation) = loop {
@@ -429,6 +430,7 @@ impl<S: Scalar> Pipeline<S> {
                     &stratification,
                     &triangulation.complex,
                     parameters.dl,
+                    stray,
                     &mut extra,
                 );
             }
@@ -550,6 +552,25 @@ fn boundary_rows(boundary: &[usize], rows: &[usize], points: usize) -> Result<Ve
     Ok(out)
 }
 
+/// How far the middle of a triangle may be from the nearest point: off the surface by a share of dl,
+/// and along it by the spacing of the points, which is taken as the median distance to the
+/// fourth neighbor.
+fn stray_limit<S: Scalar>(oracle: &EuclideanOracle<S>, dl: f64) -> f64 {
+    const SAMPLE: usize = 512;
+    let n = oracle.len();
+    let mut near = Vec::new();
+    let mut spacings: Vec<f64> = (0..n)
+        .step_by(n.div_ceil(SAMPLE))
+        .map(|i| {
+            oracle.nearest(i, 5, &mut near);
+            near.last().map_or(0.0, |x| x.distance.as_f64())
+        })
+        .collect();
+    spacings.sort_by(f64::total_cmp);
+    let spacing = spacings.get(spacings.len() / 2).copied().unwrap_or(0.0);
+    (STRAY * dl).hypot(spacing)
+}
+
 /// Adds a landmark where the middle of a triangle or of an edge is far from every point: where
 /// the surface bends more than triangles of this size can follow.
 fn add_where_astray<S: Scalar>(
@@ -558,6 +579,7 @@ fn add_where_astray<S: Scalar>(
     stratification: &Stratification<S>,
     complex: &Complex,
     dl: f64,
+    stray: f64,
     extra: &mut Vec<usize>,
 ) {
     let place = |v: u32| analysis.places.point(stratification.rows[v as usize]);
@@ -571,7 +593,7 @@ fn add_where_astray<S: Scalar>(
                 let sum: f64 = corners.iter().map(|&v| place(v)[k]).sum();
                 S::of(sum / corners.len() as f64)
             }));
-            let mut reach = STRAY * dl;
+            let mut reach = stray;
             oracle.within_of(&middle, S::of(reach), &mut near);
             if !near.is_empty() {
                 continue;
