@@ -149,6 +149,7 @@ enum Kind {
 #[derive(Default)]
 pub(super) struct Scratch<S> {
     pub(super) near: Vec<Neighbor<S>>,
+    rest: Vec<Neighbor<S>>,
     pub(super) local: Vec<f64>,
 }
 
@@ -273,39 +274,38 @@ impl<S: Scalar> Analyzer<'_, S> {
     fn explain(&self, i: usize, eps: f64, scratch: &mut Scratch<S>) -> Kind {
         let mut radius = eps;
         for _ in 0..=SHRINKS {
-            let Some((frame, center)) = self.localize(i, radius, radius, scratch) else {
+            let Some(view) = self.view(i, radius, radius, scratch) else {
                 break;
             };
-            let local = LocalPoints {
-                dimension: 3,
-                coordinates: &scratch.local,
-                fitted: scratch.near.len(),
-                center,
-                radius,
-            };
-            let plain = match OneSheet.decompose(&local) {
+            let plain = match OneSheet.decompose(&self.local(&view, &OneSheet, scratch)) {
                 Ok(fit) => fit.residual,
                 Err(_) => break,
             };
-            let best = self
-                .models
-                .iter()
-                .enumerate()
-                .filter_map(|(m, model)| Some((m, model.decompose(&local).ok()?)))
-                .filter(|(_, fit)| fit.residual < GAIN * plain)
-                .min_by(|a, b| score(&a.1).total_cmp(&score(&b.1)));
-            if let Some((m, fit)) = best {
-                let on_curve = fit.dimension_of(center) < 2;
+            let mut best: Option<(f64, usize, Decomposition)> = None;
+            for (m, model) in self.models.iter().enumerate() {
+                let local = self.local(&view, model.as_ref(), scratch);
+                let Ok(fit) = model.decompose(&local) else {
+                    continue;
+                };
+                let score = score(&fit);
+                if fit.residual < GAIN * plain && best.as_ref().is_none_or(|b| score < b.0) {
+                    best = Some((score, m, fit));
+                }
+            }
+            if let Some((_, m, fit)) = best {
+                let on_curve = fit.dimension_of(view.center) < 2;
                 if !on_curve && fit.center_offset > WITNESS_REACH * radius {
                     return Kind::Regular;
                 }
+                let local = self.local(&view, self.models[m].as_ref(), scratch);
                 let shift: Vec<f64> = fit
                     .center
                     .iter()
-                    .zip(local.point(center))
+                    .zip(local.point(view.center))
                     .map(|(a, b)| a - b)
                     .collect();
-                let place = frame
+                let place = view
+                    .frame
                     .lift_vector(&shift)
                     .iter()
                     .zip(self.cloud.point(i))
@@ -335,24 +335,63 @@ impl<S: Scalar> Analyzer<'_, S> {
         Kind::Unexplained
     }
 
-    /// Local coordinates of the ball of radius `reach` around `i`, in the frame of the ball
-    /// of `radius`, into `scratch.local`; the frame and the position of the center among the neighbors.
-    fn localize(
-        &self,
-        i: usize,
-        radius: f64,
-        reach: f64,
-        scratch: &mut Scratch<S>,
-    ) -> Option<(PrincipalFrame, usize)> {
+    /// The ball of radius `reach` around `i` in the frame of the ball of `radius`.
+    ///
+    /// The rows that are fitted come first: all of the smaller ball, or every few of it by
+    /// distance, since a fit does not get better for more than a few hundred points.
+    fn view(&self, i: usize, radius: f64, reach: f64, scratch: &mut Scratch<S>) -> Option<View> {
         self.oracle.within(i, S::of(reach), &mut scratch.near);
-        let fitted = fitted(&scratch.near, radius);
-        let frame = PrincipalFrame::of(self.cloud, scratch.near[..fitted].iter().map(|x| x.index));
+        let within = {
+            let radius = S::of(radius);
+            // Neighbors come sorted by distance.
+            scratch.near.partition_point(|x| x.distance < radius)
+        };
+        let stride = within.div_ceil(MOST_FITTED);
+        if stride > 1 {
+            scratch.rest.clear();
+            let mut kept = 0;
+            for k in 0..scratch.near.len() {
+                let x = scratch.near[k];
+                if k < within && k % stride == 0 {
+                    scratch.near[kept] = x;
+                    kept += 1;
+                } else {
+                    scratch.rest.push(x);
+                }
+            }
+            scratch.near.truncate(kept);
+            scratch.near.extend_from_slice(&scratch.rest);
+        }
+        let fitted = within.div_ceil(stride.max(1));
+        let rows = scratch.near[..fitted].iter().map(|x| x.index);
+        Some(View {
+            frame: PrincipalFrame::of(self.cloud, rows),
+            center: scratch.near.iter().position(|x| x.index == i)?,
+            fitted,
+            radius,
+        })
+    }
+
+    /// The points of a view in the coordinates that a model works in.
+    fn local<'s>(
+        &self,
+        view: &View,
+        model: &dyn SingularityModel,
+        scratch: &'s mut Scratch<S>,
+    ) -> LocalPoints<'s> {
+        let dimension = model.local_dimension();
         scratch.local.clear();
         for x in &scratch.near {
-            frame.project(self.cloud.point(x.index), 3, &mut scratch.local);
+            view.frame
+                .project(self.cloud.point(x.index), dimension, &mut scratch.local);
         }
-        let center = scratch.near.iter().position(|x| x.index == i)?;
-        Some((frame, center))
+        LocalPoints {
+            dimension,
+            coordinates: &scratch.local,
+            fitted: view.fitted,
+            center: view.center,
+            radius: view.radius,
+        }
     }
 
     /// The decomposition of the ball of a point on a curve, with the rows it labels.
@@ -363,26 +402,23 @@ impl<S: Scalar> Analyzer<'_, S> {
         scratch: &mut Scratch<S>,
     ) -> Option<(Decomposition, Vec<usize>)> {
         let radius = analysis.radii[i];
-        let (_, center) = self.localize(i, radius, LABEL_MARGIN * radius, scratch)?;
-        let local = LocalPoints {
-            dimension: 3,
-            coordinates: &scratch.local,
-            fitted: fitted(&scratch.near, radius),
-            center,
-            radius,
-        };
-        let fit = self.models[analysis.model[i] as usize]
-            .decompose(&local)
-            .ok()?;
+        let model = self.models[analysis.model[i] as usize].as_ref();
+        let view = self.view(i, radius, LABEL_MARGIN * radius, scratch)?;
+        let fit = model.decompose(&self.local(&view, model, scratch)).ok()?;
         Some((fit, scratch.near.iter().map(|x| x.index).collect()))
     }
 }
 
-/// Number of leading neighbors within `radius`: they come sorted by distance.
-fn fitted<S: Scalar>(near: &[Neighbor<S>], radius: f64) -> usize {
-    let radius = S::of(radius);
-    near.partition_point(|x| x.distance < radius)
+/// A ball with its frame.
+struct View {
+    frame: PrincipalFrame,
+    center: usize,
+    fitted: usize,
+    radius: f64,
 }
+
+/// Most points that a model is fitted to.
+const MOST_FITTED: usize = 256;
 
 /// Points are labelled up to this many radii from a curve point, so that an edge across the
 /// limit of belief finds labels at both ends.
