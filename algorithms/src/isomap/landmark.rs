@@ -402,8 +402,8 @@ mod tests {
         let e = isomap_places(&mesh, 3, &IsomapOptions::default()).unwrap();
         assert!(worst(&mesh, &e.places, 20) < 0.12);
         assert!(e.residual_variance < 0.006, "{}", e.residual_variance);
-        let thickness = e.places.iter().map(|p| p[2].abs()).fold(0.0, f64::max);
-        assert!(thickness < 1.5, "{thickness}");
+        let energy = |axis: usize| e.places.iter().map(|p| p[axis] * p[axis]).sum::<f64>();
+        assert!(energy(2) < 0.01 * energy(0), "{}", energy(2) / energy(0));
     }
 
     #[test]
