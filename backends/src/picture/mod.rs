@@ -24,6 +24,8 @@
 //! # Ok::<(), crosscap_core::Error>(())
 //! ```
 
+#[cfg(test)]
+mod gallery;
 mod page;
 mod palette;
 mod png;

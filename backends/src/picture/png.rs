@@ -290,7 +290,7 @@ fn compose(scene: &Scene, width: usize, height: usize, options: &StillOptions) -
     let shorter = size[0].min(size[1]);
     let curve_width = options
         .curve_width
-        .map_or((shorter / 170.0).max(1.6 * samples), |w| w * samples);
+        .map_or((shorter / 115.0).max(1.6 * samples), |w| w * samples);
     let stage = fit(&seen, &view, size, shorter * MARGIN + curve_width, options);
 
     let camera: Vec<Vector3<f64>> = places.iter().map(|p| view.of(*p)).collect();
