@@ -200,6 +200,21 @@ impl Scene {
         }
     }
 
+    /// Which of `count` vertices are drawn: those of triangles and curves, or all when there are none.
+    pub(super) fn used(&self, count: usize) -> Vec<bool> {
+        let mut used = vec![self.is_bare(); count];
+        let ends = self.curves.iter().flat_map(|c| c.edges.iter().flatten());
+        for &v in self.triangles.iter().flatten().chain(ends) {
+            used[v as usize] = true;
+        }
+        used
+    }
+
+    /// Whether there are only vertices and points.
+    pub(super) fn is_bare(&self) -> bool {
+        self.triangles.is_empty() && self.curves.iter().all(|c| c.edges.is_empty())
+    }
+
     /// Edges of triangles, sorted, each once.
     pub(super) fn edges(&self) -> Vec<[u32; 2]> {
         let mut edges: Vec<[u32; 2]> = self
@@ -264,6 +279,16 @@ impl Frame {
             middle: std::array::from_fn(|a| low[a] / 2.0 + high[a] / 2.0),
             half: if half > 0.0 { half } else { 1.0 },
         })
+    }
+
+    /// Its middle.
+    pub(super) fn middle(&self) -> [f64; 3] {
+        self.middle
+    }
+
+    /// Half of its longest side, above 0.
+    pub(super) fn half(&self) -> f64 {
+        self.half
     }
 
     /// A place relative to the frame: the box around everything reaches from -1 to 1 along its longest side.

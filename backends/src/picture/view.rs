@@ -1,5 +1,6 @@
 //! Where to look from.
 
+use super::Scene;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// A camera: right, up and towards the viewer, orthonormal.
@@ -78,6 +79,32 @@ impl View {
             tilted([first, third.cross(&first), third], elevation),
             third,
         )
+    }
+
+    /// The automatic view of a scene: of its triangles by area, else of the places that are
+    /// `used`, else of the points. Places and points are relative to their frame.
+    pub(super) fn of_scene(
+        scene: &Scene,
+        places: &[Vector3<f64>],
+        points: &[Vector3<f64>],
+        used: &[bool],
+    ) -> Self {
+        let mut weighted: Vec<(Vector3<f64>, f64)> = scene
+            .triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|v| places[v as usize]);
+                ((a + b + c) / 3.0, (b - a).cross(&(c - a)).norm())
+            })
+            .collect();
+        if weighted.iter().all(|w| w.1 == 0.0) {
+            let drawn = places.iter().zip(used).filter(|(_, u)| **u);
+            weighted = drawn.map(|(p, _)| (*p, 1.0)).collect();
+        }
+        if weighted.is_empty() {
+            weighted = points.iter().map(|p| (*p, 1.0)).collect();
+        }
+        Self::automatic(&weighted)
     }
 
     /// Coordinates in the camera: to the right, up, towards the viewer.
