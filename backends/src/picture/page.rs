@@ -31,9 +31,9 @@ pub fn page(scene: &Scene) -> Result<String, Error> {
     };
     let mut facts = String::new();
     for (name, value) in &scene.facts {
-        let _ = write!(
+        let _ = writeln!(
             facts,
-            "<tr><th>{}</th><td>{}</td></tr>\n",
+            "<tr><th>{}</th><td>{}</td></tr>",
             escape(name),
             escape(value)
         );
