@@ -1,1 +1,3 @@
 //! Facade of Crosscap.
+
+pub mod pipeline;
