@@ -12,9 +12,7 @@ use crosscap_algorithms::singularity::TwoPlanes;
 use crosscap_algorithms::stratify::{AnalysisOptions, Analyzer, StratifyOptions, stratify};
 use crosscap_algorithms::triangulate::{MinimumCircumradius, Triangulator};
 use crosscap_backends::euclidean::EuclideanOracle;
-use crosscap_core::{
-    Complex, CurveEdge, Error, Mesh, PointCloud, Scalar, SingularityModel,
-};
+use crosscap_core::{Complex, CurveEdge, Error, Mesh, PointCloud, Scalar, SingularityModel};
 use serde::Serialize;
 use std::fmt;
 
@@ -73,6 +71,16 @@ impl fmt::Display for Stage {
             Self::Certificate => "certificate",
         })
     }
+}
+
+fn distinct(cloud: &PointCloud<f64>) -> usize {
+    let mut rows: Vec<Vec<u64>> = cloud
+        .iter()
+        .map(|p| p.iter().map(|x| x.to_bits()).collect())
+        .collect();
+    rows.sort_unstable();
+    rows.dedup();
+    rows.len()
 }
 
 /// Pipeline.
@@ -149,7 +157,13 @@ impl Pipeline {
             tri_eps: p.tri_eps.unwrap_or(3.0 * p.dl),
             seed: p.seed,
         };
-        let st = stratify(&analyzer, &mut analysis, None, &RandomGreedy::new(), &options)?;
+        let st = stratify(
+            &analyzer,
+            &mut analysis,
+            None,
+            &RandomGreedy::new(),
+            &options,
+        )?;
         (self.on_stage)(Stage::Triangulation);
         let triangulator = Triangulator {
             chart: &ClassicalScaling,
@@ -175,14 +189,15 @@ impl Pipeline {
         }
         let kept: Vec<usize> = (0..used.len()).filter(|&v| used[v]).collect();
         let mut name = vec![0; used.len()];
-        kept.iter().enumerate().for_each(|(k, &v)| name[v] = k as u32);
+        kept.iter()
+            .enumerate()
+            .for_each(|(k, &v)| name[v] = k as u32);
         let triangles = out.complex.triangles.iter();
         let triangles = triangles.map(|t| t.map(|v| name[v as usize])).collect();
         let curves = out.complex.curve_edges.iter();
         let curves = curves.filter(|e| e.ends.iter().all(|&v| used[v as usize]));
-        let curves = curves.map(|e| {
-            CurveEdge::new(name[e.ends[0] as usize], name[e.ends[1] as usize], e.cells)
-        });
+        let curves = curves
+            .map(|e| CurveEdge::new(name[e.ends[0] as usize], name[e.ends[1] as usize], e.cells));
         let complex = Complex::new(kept.len(), triangles, curves.collect())?;
         let rows: Vec<usize> = kept.iter().map(|&v| st.rows[v]).collect();
         let index = rows.iter().map(|&r| r as i64).collect();
@@ -209,7 +224,7 @@ impl Pipeline {
                 parameters: p.clone(),
                 points: cloud.len(),
                 dimension: cloud.dimension(),
-                duplicates: 0,
+                duplicates: cloud.len() - distinct(&wide),
             },
             failures,
         })

@@ -4,14 +4,13 @@ use super::failure::Failure;
 use super::findings::{Findings, pretty};
 use super::number::positive;
 use super::output;
+use super::points::PointArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
 use crosscap_algorithms::certificate::{CertificateOptions, certify};
 use crosscap_algorithms::homology::homology;
 use crosscap_algorithms::pieces::pieces;
-use crosscap_backends::files::{
-    MESH_EXTENSIONS, MeshExtras, PointOptions, read_mesh, read_points, write_mesh,
-};
+use crosscap_backends::files::{MESH_EXTENSIONS, MeshExtras, read_mesh, read_points, write_mesh};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -37,6 +36,9 @@ pub struct Check {
     /// The points it was made from: distances both ways are measured
     #[arg(long, value_name = "POINTS")]
     points: Option<PathBuf>,
+
+    #[command(flatten)]
+    choice: PointArguments,
 
     /// Separation of the landmarks, unit of the data [default: what the mesh was made with, or 3/4 of the median edge]
     #[arg(long, visible_alias = "landmark-separation", value_name = "L", value_parser = positive)]
@@ -67,7 +69,7 @@ impl Check {
         let file = read_mesh(&self.mesh)?;
         let mesh = &file.mesh;
         let points = match &self.points {
-            Some(path) => Some(read_points(path, &PointOptions::default())?.into_f64()),
+            Some(path) => Some(read_points(path, &self.choice.options())?.into_f64()),
             None => None,
         };
         if let (Some(points), Some(path)) = (&points, &self.points)

@@ -31,7 +31,7 @@ pub struct Demo {
     output: PathBuf,
 
     /// Seed of the sample and of the landmarks
-    #[arg(short, long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
 }
 
@@ -73,7 +73,7 @@ impl Demo {
         let progress = Progress::new("drawing");
         let page = self.output.join("index.html");
         let image = self.output.join("picture.png");
-        let scene = picture::scene("Two spheres", &findings, true, None)?;
+        let scene = picture::scene("Two spheres", &findings, "verified", None)?;
         let pages = picture::bytes(&page, &scene, picture::SIZE)?;
         let pixels = picture::bytes(&image, &scene, picture::SIZE)?;
         std::fs::create_dir_all(&self.output).map_err(|source| FileError::Write {

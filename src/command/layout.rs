@@ -18,7 +18,11 @@ pub enum LayoutName {
 impl LayoutName {
     /// What suits a mesh in R^`dimension`: its own coordinates, or Isomap above three.
     pub fn suiting(dimension: usize) -> Self {
-        if dimension <= 3 { Self::Xyz } else { Self::Isomap }
+        if dimension <= 3 {
+            Self::Xyz
+        } else {
+            Self::Isomap
+        }
     }
 
     /// What a reader calls it.

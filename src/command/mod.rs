@@ -11,6 +11,7 @@ mod output;
 mod paper;
 mod parameters;
 mod picture;
+mod points;
 mod reconstruct;
 mod sample;
 mod terminal;

@@ -76,7 +76,8 @@ fn resolved(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| {
         let folder = folder_of(path);
         let folder = folder.canonicalize().unwrap_or_else(|_| folder.into());
-        path.file_name().map_or(folder.clone(), |name| folder.join(name))
+        path.file_name()
+            .map_or(folder.clone(), |name| folder.join(name))
     })
 }
 
@@ -103,9 +104,21 @@ mod tests {
         let at = |name: &str| folder.path().join(name);
         assert!(check(&at("a.png"), PICTURES).is_ok());
         assert!(check(&at("a.HTML"), PICTURES).is_ok());
-        assert!(matches!(check(&at("a.gif"), PICTURES), Err(FileError::Extension { .. })));
-        assert!(matches!(check(&at("a"), PICTURES), Err(FileError::Extension { .. })));
-        assert!(matches!(check(&at("no/a.png"), PICTURES), Err(FileError::Folder { .. })));
-        assert!(matches!(check(folder.path(), ""), Err(FileError::NotAFile { .. })));
+        assert!(matches!(
+            check(&at("a.gif"), PICTURES),
+            Err(FileError::Extension { .. })
+        ));
+        assert!(matches!(
+            check(&at("a"), PICTURES),
+            Err(FileError::Extension { .. })
+        ));
+        assert!(matches!(
+            check(&at("no/a.png"), PICTURES),
+            Err(FileError::Folder { .. })
+        ));
+        assert!(matches!(
+            check(folder.path(), ""),
+            Err(FileError::NotAFile { .. })
+        ));
     }
 }

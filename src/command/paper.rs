@@ -3,9 +3,7 @@
 use super::failure::Failure;
 use super::findings::pretty;
 use super::number::{betti, median};
-use super::parameters::{
-    DIMENSION_TOLERANCE, MethodName, curve_tolerance, fit_tolerance, threads,
-};
+use super::parameters::{DIMENSION_TOLERANCE, MethodName, curve_tolerance, fit_tolerance, threads};
 use super::terminal::{Progress, complain, say};
 use clap::Args;
 use crosscap::pipeline::{Parameters, Pipeline};
@@ -49,7 +47,7 @@ pub struct Paper {
     method: MethodName,
 
     /// Number of threads, 0 for all processors
-    #[arg(short, long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     threads: u16,
 
     /// Print JSON, with every run
@@ -149,22 +147,30 @@ impl Paper {
             return Ok(catalogue().into_iter().filter_map(with_paper).collect());
         }
         let named = self.only.iter().map(|name| {
-            SampleSurface::find(name).ok().and_then(with_paper).ok_or_else(|| {
-                let names: Vec<&str> = catalogue()
-                    .iter()
-                    .filter(|s| s.paper().is_some())
-                    .map(SampleSurface::name)
-                    .collect();
-                Failure::usage(format!(
-                    "--only {name}: the paper has no such surface, expected one of {}",
-                    names.join(", ")
-                ))
-            })
+            SampleSurface::find(name)
+                .ok()
+                .and_then(with_paper)
+                .ok_or_else(|| {
+                    let names: Vec<&str> = catalogue()
+                        .iter()
+                        .filter(|s| s.paper().is_some())
+                        .map(SampleSurface::name)
+                        .collect();
+                    Failure::usage(format!(
+                        "--only {name}: the paper has no such surface, expected one of {}",
+                        names.join(", ")
+                    ))
+                })
         });
         named.collect()
     }
 
-    fn one(&self, surface: &SampleSurface, paper: &PaperExample, seed: u64) -> Result<Run, Failure> {
+    fn one(
+        &self,
+        surface: &SampleSurface,
+        paper: &PaperExample,
+        seed: u64,
+    ) -> Result<Run, Failure> {
         let mut sampling = surface.default_sampling(seed);
         sampling.boundary = paper.boundary_given;
         let sample = surface.sample(&sampling)?;
@@ -196,8 +202,7 @@ impl Paper {
                 let h = &outcome.homology;
                 let truth = surface.truth();
                 run.verified = outcome.is_verified();
-                run.right =
-                    h.betti_rational == truth.betti && h.betti_mod2 == truth.betti_mod_2;
+                run.right = h.betti_rational == truth.betti && h.betti_mod2 == truth.betti_mod_2;
                 run.landmarks = Some(outcome.mesh.complex.vertices);
                 run.mean_neighbors = mean_neighbors(&outcome.mesh, radius).ok();
                 run.betti = Some(h.betti_rational);
@@ -241,7 +246,9 @@ pub fn paper_parameters(
         tri_eps: paper.triangulation_epsilon,
         dt: paper.dimension_tolerance.unwrap_or(DIMENSION_TOLERANCE),
         dp: paper.fit_tolerance.unwrap_or_else(|| fit_tolerance(eps)),
-        ep: paper.curve_tolerance.unwrap_or_else(|| curve_tolerance(eps)),
+        ep: paper
+            .curve_tolerance
+            .unwrap_or_else(|| curve_tolerance(eps)),
         dl: paper.landmark_separation,
         seed,
         surface: paper.surface,
@@ -293,7 +300,11 @@ impl Row {
 
     fn line(&self) -> String {
         let number = |x: f64, digits: usize| {
-            if x.is_nan() { "-".into() } else { format!("{x:.digits$}") }
+            if x.is_nan() {
+                "-".into()
+            } else {
+                format!("{x:.digits$}")
+            }
         };
         format!(
             "{:<18} {:>9} {:>5}   {:<13} {:<10} {:<21} {:.2} ({:.0})",
@@ -301,7 +312,11 @@ impl Row {
             format!("{}/{}", self.ok, self.runs.len()),
             self.silent_wrong,
             format!("{} ({})", number(self.landmarks, 0), self.paper_landmarks),
-            format!("{} ({})", number(self.mean_neighbors, 0), self.paper_mean_neighbors),
+            format!(
+                "{} ({})",
+                number(self.mean_neighbors, 0),
+                self.paper_mean_neighbors
+            ),
             format!(
                 "{} ({})",
                 self.betti.map_or("-".into(), betti),

@@ -83,7 +83,7 @@ pub struct ParameterArguments {
     pub dl: f64,
 
     /// Seed of the random choice of landmarks
-    #[arg(short, long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
 
     /// Take every point as 2-dimensional: no double curve is looked for, as the paper does for its manifolds
@@ -95,7 +95,7 @@ pub struct ParameterArguments {
     pub method: MethodName,
 
     /// Number of threads, 0 for all processors; the result does not depend on it
-    #[arg(short, long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
 }
 

@@ -11,11 +11,12 @@ use std::path::Path;
 /// Width and height of an image, pixels.
 pub const SIZE: [usize; 2] = [1200, 900];
 
-/// The scene of a mesh, colored by piece. `first` is the way to see it that is shown first.
+/// The scene of a mesh, colored by piece. `first` is the way to see it that is shown first,
+/// `verdict` what the facts beside it say.
 pub fn scene(
     title: &str,
     findings: &Findings<'_>,
-    verified: bool,
+    verdict: &str,
     first: Option<LayoutName>,
 ) -> Result<Scene, Error> {
     let mesh = findings.mesh;
@@ -45,10 +46,7 @@ pub fn scene(
         ("Betti numbers over Q", betti(h.betti_rational)),
         ("Betti numbers over Z/2", betti(h.betti_mod2)),
         ("pieces", findings.description()),
-        (
-            "verdict",
-            if verified { "verified" } else { "not verified" }.into(),
-        ),
+        ("verdict", verdict.into()),
     ];
     if let Ok(pieces) = findings.pieces {
         facts.insert(4, ("double curves", pieces.curves.len().to_string()));
@@ -89,9 +87,19 @@ pub fn title(path: &Path) -> String {
 
 /// Width and height, as in 1200x900.
 pub fn size(text: &str) -> Result<[usize; 2], String> {
-    let wrong = || format!("expected WIDTHxHEIGHT in pixels, each 16 to 8192, such as {}x{}", SIZE[0], SIZE[1]);
+    let wrong = || {
+        format!(
+            "expected WIDTHxHEIGHT in pixels, each 16 to 8192, such as {}x{}",
+            SIZE[0], SIZE[1]
+        )
+    };
     let (width, height) = text.split_once('x').ok_or_else(wrong)?;
-    let side = |text: &str| text.parse().ok().filter(|s| (16..=8192).contains(s)).ok_or_else(wrong);
+    let side = |text: &str| {
+        text.parse()
+            .ok()
+            .filter(|s| (16..=8192).contains(s))
+            .ok_or_else(wrong)
+    };
     Ok([side(width)?, side(height)?])
 }
 

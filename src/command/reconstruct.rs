@@ -4,14 +4,14 @@ use super::failure::Failure;
 use super::findings::{Findings, pretty};
 use super::number::counted;
 use super::parameters::ParameterArguments;
+use super::points::PointArguments;
 use super::terminal::{Progress, complain, say};
 use super::{output, picture};
 use clap::Args;
 use crosscap::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap_algorithms::certificate::Verdict;
 use crosscap_backends::files::{
-    AnyCloud, MESH_EXTENSIONS, MeshExtras, PointOptions, read_indices, read_points,
-    write_bytes_whole, write_mesh,
+    AnyCloud, MESH_EXTENSIONS, MeshExtras, read_indices, read_points, write_bytes_whole, write_mesh,
 };
 use crosscap_core::Error;
 use serde_json::{Value, json};
@@ -52,13 +52,8 @@ pub struct Reconstruct {
     #[arg(long, value_name = "INDICES")]
     boundary: Option<PathBuf>,
 
-    /// Which array of a .npz, which variable of a .mat [default: points, vertices, or the only one]
-    #[arg(long, value_name = "NAME")]
-    array: Option<String>,
-
-    /// The points are the columns of the array
-    #[arg(long)]
-    transpose: bool,
+    #[command(flatten)]
+    choice: PointArguments,
 
     /// Report to write, JSON: version, parameters, counts and seconds of every stage, homology, certificate
     #[arg(long, value_name = "REPORT.json")]
@@ -79,11 +74,7 @@ impl Reconstruct {
         // Refuse what can be refused before the work begins.
         self.parameters.parameters(Vec::new())?;
         self.check_outputs()?;
-        let options = PointOptions {
-            array: self.array.clone(),
-            transpose: self.transpose,
-        };
-        let cloud = read_points(&self.points, &options)?;
+        let cloud = read_points(&self.points, &self.choice.options())?;
         if cloud.len() < LEAST_POINTS {
             return Err(Failure::usage(format!(
                 "{}: found {}, expected at least {LEAST_POINTS}, what one neighborhood needs",
@@ -91,7 +82,9 @@ impl Reconstruct {
                 counted(cloud.len(), "point")
             )));
         }
-        let parameters = self.parameters.parameters(self.boundary_rows(cloud.len())?)?;
+        let parameters = self
+            .parameters
+            .parameters(self.boundary_rows(cloud.len())?)?;
         let outcome = reconstruct(&cloud, parameters.clone())?;
         let verified = outcome.is_verified();
         if !verified {
@@ -158,10 +151,14 @@ impl Reconstruct {
         outcome: &Outcome,
     ) -> Result<(), Failure> {
         let findings = findings(outcome);
-        let verified = outcome.is_verified();
+        let verdict = if outcome.is_verified() {
+            "verified"
+        } else {
+            "not verified"
+        };
         // What may fail comes first: the mesh is written when everything else is.
         if let Some(path) = &self.picture {
-            let scene = picture::scene(&picture::title(&self.points), &findings, verified, None)?;
+            let scene = picture::scene(&picture::title(&self.points), &findings, verdict, None)?;
             write_bytes_whole(path, &picture::bytes(path, &scene, picture::SIZE)?)?;
         }
         if let Some(path) = &self.report {
@@ -173,18 +170,13 @@ impl Reconstruct {
         }
         write_reconstruction(&self.output, parameters, outcome)?;
         let mut lines = vec![
-            format!(
-                "{}: {} ({})",
-                self.output.display(),
-                findings.size(),
-                if verified { "verified" } else { "not verified" }
-            ),
+            format!("{}: {} ({verdict})", self.output.display(), findings.size()),
             format!("Betti numbers {}", findings.topology()),
             findings.description(),
         ];
         if let Some(count @ 1..) = duplicates(outcome) {
             lines.push(format!(
-                "{} in the input, counted once",
+                "{} in the input",
                 counted(count, "duplicate point")
             ));
         }
@@ -229,7 +221,9 @@ pub fn reasons(outcome: &Outcome) -> Vec<String> {
     let more = reasons.len().saturating_sub(REASONS);
     reasons.truncate(REASONS);
     if more > 0 {
-        reasons.push(format!("and {more} more (see the report of --keep-unverified)"));
+        reasons.push(format!(
+            "and {more} more (see the report of --keep-unverified)"
+        ));
     }
     reasons
 }

@@ -47,7 +47,7 @@ pub struct Sample {
     count: Option<u32>,
 
     /// Seed of the random numbers
-    #[arg(short, long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
 
     /// Thin the points to at least this spacing, unit of the surface
@@ -120,7 +120,10 @@ impl Sample {
 
     fn points(&self, name: &str) -> Result<Drawn, Failure> {
         let surface = SampleSurface::find(name).map_err(|_| {
-            Failure::usage(format!("there is no surface {name:?}; there are\n{}", list()))
+            Failure::usage(format!(
+                "there is no surface {name:?}; there are\n{}",
+                list()
+            ))
         })?;
         if self.boundary_out.is_some() && !surface.has_boundary() {
             return Err(Failure::usage(format!(
@@ -146,12 +149,20 @@ impl Sample {
         let sample = surface.sample(&sampling)?;
         let points = self.embedded(sample.points)?;
         Ok(Drawn {
-            points: if embedded { self.noisy(points)? } else { points },
+            points: if embedded {
+                self.noisy(points)?
+            } else {
+                points
+            },
             boundary: sample.boundary,
             name: surface.name(),
             summary: surface.summary(),
             betti: surface.truth().betti,
-            paper: surface.paper().copied(),
+            // With another number of points the parameters would have to be others.
+            paper: surface
+                .paper()
+                .copied()
+                .filter(|_| self.count.is_none() && self.thin.is_none()),
         })
     }
 

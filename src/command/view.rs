@@ -10,9 +10,11 @@ use crosscap_algorithms::certificate::{CertificateOptions, certify};
 use crosscap_algorithms::homology::homology;
 use crosscap_algorithms::pieces::pieces;
 use crosscap_backends::files::{read_mesh, write_bytes_whole};
+use serde_json::Value;
 use std::path::PathBuf;
 
-const EXAMPLES: &str = "Every piece has a color of its own; double curves are black, a boundary is dark blue.
+const EXAMPLES: &str =
+    "Every piece has a color of its own; double curves are black, a boundary is dark blue.
 
 Examples:
   crosscap view mesh.npz -o mesh.html
@@ -49,21 +51,31 @@ impl View {
     pub fn run(&self) -> Result<(), Failure> {
         output::check(&self.output, output::PICTURES)?;
         output::distinct(&[&self.mesh], &[&self.output])?;
-        let mesh = read_mesh(&self.mesh)?.mesh;
+        let file = read_mesh(&self.mesh)?;
+        let mesh = &file.mesh;
         let progress = Progress::new("drawing");
         let homology = homology(&mesh.complex)?;
-        let certificate = certify(&mesh, &CertificateOptions::default());
-        let pieces = pieces(&mesh);
+        let certificate = certify(mesh, &CertificateOptions::default());
+        let pieces = pieces(mesh);
         let findings = Findings {
-            mesh: &mesh,
+            mesh,
             homology: &homology,
             certificate: &certificate,
             pieces: &pieces,
         };
         let title = self.title.clone();
         let title = title.unwrap_or_else(|| picture::title(&self.mesh));
-        let verified = certificate.verdict().is_verified();
-        let scene = picture::scene(&title, &findings, verified, self.layout)?;
+        let made = file
+            .extras
+            .metadata
+            .get("verified")
+            .and_then(Value::as_bool);
+        let verdict = match (certificate.verdict().is_verified(), made) {
+            (true, Some(true)) => "verified",
+            (true, None) => "verified, as far as can be told without the points",
+            _ => "not verified",
+        };
+        let scene = picture::scene(&title, &findings, verdict, self.layout)?;
         let bytes = picture::bytes(&self.output, &scene, self.size)?;
         write_bytes_whole(&self.output, &bytes)?;
         drop(progress);
