@@ -59,14 +59,16 @@ impl Findings<'_> {
 
     /// Everything in lines, the verdict last.
     pub fn lines(&self) -> String {
-        let orientable = match (self.orientable(), self.pieces) {
-            (Some(true), _) => "every piece".into(),
-            (_, Ok(pieces)) => {
-                let all = &pieces.pieces;
-                let no = all.iter().filter(|p| !p.surface.orientable).count();
-                format!("{no} of {} not", counted(all.len(), "piece"))
+        let orientable = match self.pieces {
+            Ok(pieces) => {
+                let all = pieces.pieces.len();
+                let no = pieces.pieces.iter();
+                match no.filter(|p| !p.surface.orientable).count() {
+                    0 => "yes".into(),
+                    no => format!("no ({no} of {} not)", counted(all, "piece")),
+                }
             }
-            _ => "unknown, as the pieces are".into(),
+            Err(_) => "unknown, as the pieces are".into(),
         };
         format!(
             "Betti      {}; Euler characteristic {}\npieces     {}\norientable {orientable}\n{}",
