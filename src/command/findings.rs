@@ -1,0 +1,110 @@
+//! What is known about a mesh, for readers and for programs.
+
+use super::number::{betti, counted};
+use crosscap_algorithms::certificate::Certificate;
+use crosscap_algorithms::homology::Homology;
+use crosscap_algorithms::pieces::{Pieces, PiecesError};
+use crosscap_core::Mesh;
+use serde_json::{Map, Value, json};
+
+/// What is known about a mesh.
+#[derive(Clone, Copy)]
+pub struct Findings<'a> {
+    pub mesh: &'a Mesh,
+    pub homology: &'a Homology,
+    pub certificate: &'a Certificate,
+    pub pieces: &'a Result<Pieces, PiecesError>,
+}
+
+impl Findings<'_> {
+    /// "1586 vertices in R^3, 3256 triangles".
+    pub fn size(&self) -> String {
+        format!(
+            "{} in R^{}, {}",
+            counted(self.mesh.complex.vertices, "vertex"),
+            self.mesh.vertices.dimension(),
+            counted(self.mesh.complex.triangles.len(), "triangle"),
+        )
+    }
+
+    /// Betti numbers and torsion in one line.
+    pub fn topology(&self) -> String {
+        let h = self.homology;
+        let torsion = if h.torsion.is_empty() {
+            "no torsion".into()
+        } else {
+            let factors: Vec<String> = h.torsion.iter().map(|t| format!("Z/{t}")).collect();
+            format!("torsion {} in H1", factors.join(" + "))
+        };
+        format!(
+            "{} over Q; {} over Z/2; {torsion}",
+            betti(h.betti_rational),
+            betti(h.betti_mod2)
+        )
+    }
+
+    /// The pieces in a sentence, or why they cannot be told.
+    pub fn description(&self) -> String {
+        match self.pieces {
+            Ok(pieces) => pieces.to_string(),
+            Err(error) => format!("not told apart: {error}"),
+        }
+    }
+
+    /// Whether every piece is orientable; `None` when the pieces cannot be told.
+    pub fn orientable(&self) -> Option<bool> {
+        let pieces = self.pieces.as_ref().ok()?;
+        Some(pieces.pieces.iter().all(|p| p.surface.orientable))
+    }
+
+    /// Everything in lines, the verdict last.
+    pub fn lines(&self) -> String {
+        let orientable = match self.pieces {
+            Ok(pieces) => {
+                let all = pieces.pieces.len();
+                let no = pieces.pieces.iter();
+                match no.filter(|p| !p.surface.orientable).count() {
+                    0 => "yes".into(),
+                    no => format!("no ({no} of {} not)", counted(all, "piece")),
+                }
+            }
+            Err(_) => "unknown, as the pieces are".into(),
+        };
+        format!(
+            "Betti      {}; Euler characteristic {}\npieces     {}\norientable {orientable}\n{}",
+            self.topology(),
+            self.homology.euler,
+            self.description(),
+            self.certificate
+        )
+    }
+
+    /// The same for programs.
+    pub fn json(&self, verified: bool) -> Map<String, Value> {
+        let (pieces, error) = match self.pieces {
+            Ok(pieces) => (json!(pieces), Value::Null),
+            Err(error) => (Value::Null, json!(error.to_string())),
+        };
+        let all = json!({
+            "verified": verified,
+            "vertices": self.mesh.complex.vertices,
+            "dimension": self.mesh.vertices.dimension(),
+            "triangles": self.mesh.complex.triangles.len(),
+            "homology": self.homology,
+            "orientable": self.orientable(),
+            "description": self.pieces.as_ref().ok().map(ToString::to_string),
+            "pieces": pieces,
+            "pieces_error": error,
+            "certificate": self.certificate,
+        });
+        match all {
+            Value::Object(map) => map,
+            _ => Map::new(),
+        }
+    }
+}
+
+/// JSON for people to read, with a line feed at its end.
+pub fn pretty(value: &Value) -> String {
+    format!("{value:#}\n")
+}

@@ -1,0 +1,104 @@
+//! Commands, one a file, and what they share.
+
+mod check;
+mod convert;
+mod demo;
+mod failure;
+mod findings;
+mod layout;
+mod number;
+mod output;
+mod paper;
+mod parameters;
+mod picture;
+mod points;
+mod reconstruct;
+mod sample;
+mod terminal;
+mod view;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use std::process::ExitCode;
+
+const EXIT_CODES: &str = "Exit codes:
+  0  done; for a reconstruction or a check: the mesh is verified
+  1  no verified mesh: the reason, the place and the parameter to change are printed
+  2  bad usage, bad input, or a file that cannot be written
+
+Examples:
+  crosscap demo
+  crosscap sample two-spheres -o points.npy
+  crosscap reconstruct points.npy -o mesh.npz --eps 0.25 --dl 0.1
+  crosscap check mesh.npz --points points.npy
+  crosscap view mesh.npz -o mesh.html
+
+`crosscap COMMAND --help` tells more about a command, with examples.";
+
+/// Triangulated surfaces that may cross themselves, from points in R^N.
+///
+/// A cloud of points goes in, a triangulated surface comes out, with its Betti numbers, its pieces and a verdict. A
+/// surface may cross itself along double curves, and may have a boundary (whose points are given).
+///
+/// Method: S. Martin and J.-P. Watson, Non-manifold surface reconstruction from high-dimensional point cloud data,
+/// Computational Geometry 44 (2011).
+#[derive(Debug, Parser)]
+#[command(name = "crosscap", version, after_long_help = EXIT_CODES)]
+#[command(arg_required_else_help = true, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Demo(demo::Demo),
+    Sample(sample::Sample),
+    Reconstruct(Box<reconstruct::Reconstruct>),
+    Check(check::Check),
+    View(view::View),
+    Convert(convert::Convert),
+    Paper(paper::Paper),
+}
+
+/// Runs the command line of this process.
+pub fn run() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(message) => {
+            // A reader that has gone away (a closed pipe) is no reason to complain.
+            let _ = message.print();
+            return match message.kind() {
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => ExitCode::SUCCESS,
+                _ => ExitCode::from(Failure::USAGE),
+            };
+        }
+    };
+    let result = match cli.command {
+        Command::Demo(command) => command.run(),
+        Command::Sample(command) => command.run(),
+        Command::Reconstruct(command) => command.run(),
+        Command::Check(command) => command.run(),
+        Command::View(command) => command.run(),
+        Command::Convert(command) => command.run(),
+        Command::Paper(command) => command.run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            terminal::complain(&failure);
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_of_the_arguments_is_consistent() {
+        super::Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,147 @@
+//! Parameters of a reconstruction as the command line has them.
+
+use super::failure::Failure;
+use super::number::{positive, share};
+use clap::{Args, ValueEnum};
+use crosscap::pipeline::{Method, Parameters};
+
+/// Which algorithm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// Cut the points along the double curves into cells, triangulate cell by cell
+    #[default]
+    Cells,
+    /// The algorithm of the paper taken literally, for comparison
+    Paper,
+}
+
+impl From<MethodName> for Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Cells => Self::Cells,
+            MethodName::Paper => Self::Paper,
+        }
+    }
+}
+
+/// Default of the dimension tolerance.
+pub const DIMENSION_TOLERANCE: f64 = 0.05;
+
+/// Default of the fit tolerance: the paper's share of eps for two spheres.
+pub fn fit_tolerance(eps: f64) -> f64 {
+    eps / 5.0
+}
+
+/// Default of the curve tolerance: between the paper's shares of eps (1/5, 1/8, 1/16, 1/11).
+pub fn curve_tolerance(eps: f64) -> f64 {
+    eps / 10.0
+}
+
+#[derive(Args, Debug)]
+#[command(allow_negative_numbers = true)]
+pub struct ParameterArguments {
+    /// Radius of a neighborhood, unit of the data
+    ///
+    /// Points nearer than this (strictly) are what local dimension and crossing are read from. About 50 points or more
+    /// should be so near; the surface should be nearly flat over this distance.
+    #[arg(long, visible_alias = "epsilon", value_name = "E", value_parser = positive)]
+    pub eps: f64,
+
+    /// Radius of a chart in the triangulation, unit of the data
+    ///
+    /// Left out: what measurements say works for the method (3 dl for cells, eps for paper). Must be larger than dl.
+    #[arg(long, visible_alias = "triangulation-epsilon", value_name = "E", value_parser = positive)]
+    pub tri_eps: Option<f64>,
+
+    /// Tolerance of the local dimension: the share of variance left over, 0 to 1
+    ///
+    /// Larger values see fewer crossings. The paper uses 0.01 to 0.075.
+    #[arg(
+        long,
+        visible_alias = "dimension-tolerance",
+        value_name = "T",
+        value_parser = share,
+        default_value_t = DIMENSION_TOLERANCE
+    )]
+    pub dt: f64,
+
+    /// Tolerance of the fit of two sheets, unit of the data: the mean distance of the points to the nearer one
+    /// [default: eps / 5]
+    #[arg(long, visible_alias = "fit-tolerance", value_name = "T", value_parser = positive)]
+    pub dp: Option<f64>,
+
+    /// Tolerance of the double curve, unit of the data: points so near to both sheets are on it [default: eps / 10]
+    ///
+    /// Should exceed the sag of the surface within a neighborhood, about eps^2 / (4 x radius of curvature).
+    #[arg(long, visible_alias = "curve-tolerance", value_name = "T", value_parser = positive)]
+    pub ep: Option<f64>,
+
+    /// Separation of the landmarks, unit of the data: the vertices of the mesh are at least so far apart
+    ///
+    /// Decides how fine the mesh is. A third to a half of eps is a good start.
+    #[arg(long, visible_alias = "landmark-separation", value_name = "L", value_parser = positive)]
+    pub dl: f64,
+
+    /// Seed of the random choice of landmarks
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+
+    /// Take every point as 2-dimensional: no double curve is looked for, as the paper does for its manifolds
+    #[arg(long)]
+    pub surface: bool,
+
+    /// Algorithm
+    #[arg(long, value_name = "NAME", value_enum, default_value_t)]
+    pub method: MethodName,
+
+    /// Number of threads, 0 for all processors; the result does not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    pub threads: u16,
+}
+
+impl ParameterArguments {
+    /// The parameters of the pipeline, defaults filled in.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for values that contradict each other.
+    pub fn parameters(&self, boundary: Vec<usize>) -> Result<Parameters, Failure> {
+        let (eps, dl) = (self.eps, self.dl);
+        if dl > eps {
+            return Err(Failure::usage(format!(
+                "--dl {dl} is larger than --eps {eps}: landmarks would be farther apart than a neighborhood reaches; \
+                 decrease --dl or increase --eps"
+            )));
+        }
+        if let Some(radius) = self.tri_eps.filter(|&radius| radius <= dl) {
+            return Err(Failure::usage(format!(
+                "--tri-eps {radius} is not larger than --dl {dl}: no two landmarks would share a chart; 3 dl = {} is \
+                 a good value",
+                3.0 * dl
+            )));
+        }
+        if let Some(ep) = self.ep.filter(|&ep| ep >= eps) {
+            return Err(Failure::usage(format!(
+                "--ep {ep} is not smaller than --eps {eps}: every point of a neighborhood would be on the double \
+                 curve; decrease --ep (a tenth of eps is usual)"
+            )));
+        }
+        Ok(Parameters {
+            eps,
+            tri_eps: self.tri_eps,
+            dt: self.dt,
+            dp: self.dp.unwrap_or_else(|| fit_tolerance(eps)),
+            ep: self.ep.unwrap_or_else(|| curve_tolerance(eps)),
+            dl,
+            seed: self.seed,
+            surface: self.surface,
+            boundary,
+            method: self.method.into(),
+            threads: threads(self.threads),
+        })
+    }
+}
+
+/// 0 stands for all processors.
+pub fn threads(count: u16) -> Option<usize> {
+    (count > 0).then_some(count.into())
+}

@@ -1,0 +1,951 @@
+//! The built program, run as a user runs it.
+
+use crosscap_algorithms::surfaces::Random;
+use crosscap_backends::files::{
+    MeshExtras, PointOptions, read_indices, read_mesh, read_points, write_mesh, write_points,
+};
+use crosscap_core::{Complex, CurveEdge, Mesh, PointCloud};
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use tempfile::TempDir;
+
+/// What a run of the program left behind.
+struct Ran {
+    code: Option<i32>,
+    out: String,
+    err: String,
+}
+
+impl Ran {
+    #[track_caller]
+    fn expect(self, code: i32) -> Self {
+        assert!(!self.err.contains("panicked"), "{}", self.err);
+        assert_eq!(
+            self.code,
+            Some(code),
+            "\nstdout: {}\nstderr: {}",
+            self.out,
+            self.err
+        );
+        self
+    }
+
+    #[track_caller]
+    fn says(self, part: &str) -> Self {
+        assert!(self.out.contains(part), "no {part:?} in: {}", self.out);
+        self
+    }
+
+    #[track_caller]
+    fn complains(self, part: &str) -> Self {
+        assert!(self.err.contains(part), "no {part:?} in: {}", self.err);
+        self
+    }
+
+    #[track_caller]
+    fn json(&self) -> Value {
+        serde_json::from_str(&self.out).unwrap()
+    }
+}
+
+/// A folder to run the program in, which goes away with the test.
+struct Room(TempDir);
+
+impl Room {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Arguments between white space; file names are relative to the folder.
+    fn run(&self, arguments: &str) -> Ran {
+        let output = Command::new(env!("CARGO_BIN_EXE_crosscap"))
+            .args(arguments.split_whitespace())
+            .current_dir(self.0.path())
+            .output()
+            .unwrap();
+        Ran {
+            code: output.status.code(),
+            out: String::from_utf8(output.stdout).unwrap(),
+            err: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    fn files(&self) -> Vec<String> {
+        let all = std::fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<String> = all
+            .map(|f| f.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), content).unwrap();
+    }
+
+    fn mesh(&self, name: &str, mesh: &Mesh) {
+        write_mesh(self.path(name), mesh, &MeshExtras::default(), None).unwrap();
+    }
+
+    fn points(&self, name: &str) -> PointCloud<f64> {
+        let cloud = read_points(self.path(name), &PointOptions::default());
+        cloud.unwrap().into_f64()
+    }
+}
+
+fn mesh(
+    dimension: usize,
+    places: Vec<f64>,
+    triangles: Vec<[u32; 3]>,
+    curves: Vec<CurveEdge>,
+) -> Mesh {
+    let places = PointCloud::new(dimension, places).unwrap();
+    let count = places.len();
+    let complex = Complex::new(count, triangles, curves).unwrap();
+    Mesh::new(complex, places, vec![-1; count]).unwrap()
+}
+
+/// A sphere of eight triangles.
+fn octahedron() -> Mesh {
+    let places = vec![
+        1., 0., 0., -1., 0., 0., 0., 1., 0., 0., -1., 0., 0., 0., 1., 0., 0., -1.,
+    ];
+    let signs = [0, 1].into_iter();
+    let faces = signs.flat_map(|x| {
+        [2, 3]
+            .into_iter()
+            .flat_map(move |y| [4, 5].map(|z| [x, y, z]))
+    });
+    mesh(3, places, faces.collect(), vec![])
+}
+
+/// Two spheres that cross in a circle of `n` edges: four caps over one rim, two of them bulging out over a
+/// ring of their own.
+fn two_spheres(n: u32) -> Mesh {
+    let mut places = Vec::new();
+    for (x, radius) in [(0.0, 1.0), (-0.8, 1.5), (0.8, 1.5)] {
+        for k in 0..n {
+            let (sine, cosine) = (TAU * f64::from(k) / f64::from(n)).sin_cos();
+            places.extend([x, radius * cosine, radius * sine]);
+        }
+    }
+    for apex in [-3.0, 3.0, -1.6, 1.6] {
+        places.extend([apex, 0.0, 0.0]);
+    }
+    let mut faces = Vec::new();
+    for k in 0..n {
+        let next = (k + 1) % n;
+        for side in [1, 2] {
+            let (a, b) = (side * n + k, side * n + next);
+            faces.extend([[k, next, a], [next, a, b], [a, b, 3 * n + side - 1]]);
+            faces.push([k, next, 3 * n + 1 + side]);
+        }
+    }
+    let rim = (0..n).map(|k| CurveEdge::new(k, (k + 1) % n, 4));
+    mesh(3, places, faces, rim.collect())
+}
+
+/// A torus in R^4, the product of two circles.
+fn flat_torus(n: u32) -> Mesh {
+    let mut places = Vec::new();
+    let mut faces = Vec::new();
+    for i in 0..n {
+        for j in 0..n {
+            for k in [i, j] {
+                let (sine, cosine) = (TAU * f64::from(k) / f64::from(n)).sin_cos();
+                places.extend([cosine, sine]);
+            }
+            let at = |i: u32, j: u32| (i % n) * n + j % n;
+            faces.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+            faces.push([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
+        }
+    }
+    mesh(4, places, faces, vec![])
+}
+
+/// Points that fill a ball of R^3: no surface.
+fn ball(count: usize) -> PointCloud<f64> {
+    let mut random = Random::new(5);
+    let mut coordinates = Vec::new();
+    while coordinates.len() < 3 * count {
+        let p = [0; 3].map(|_| random.between(-1.0, 1.0));
+        if p.iter().map(|c| c * c).sum::<f64>() < 1.0 {
+            coordinates.extend(p);
+        }
+    }
+    PointCloud::new(3, coordinates).unwrap()
+}
+
+// Usage
+
+#[test]
+fn every_command_explains_itself() {
+    let room = Room::new();
+    room.run("--help")
+        .expect(0)
+        .says("Exit codes:")
+        .says("demo");
+    room.run("--version")
+        .expect(0)
+        .says(env!("CARGO_PKG_VERSION"));
+    for command in [
+        "demo",
+        "sample",
+        "reconstruct",
+        "check",
+        "view",
+        "convert",
+        "paper",
+    ] {
+        let ran = room.run(&format!("{command} --help")).expect(0);
+        ran.says("Examples:").says(&format!("crosscap {command}"));
+    }
+}
+
+#[test]
+fn long_names_stand_beside_the_short_ones() {
+    let room = Room::new();
+    let ran = room.run("reconstruct --help").expect(0);
+    for name in [
+        "--epsilon",
+        "--triangulation-epsilon",
+        "--dimension-tolerance",
+        "--fit-tolerance",
+        "--curve-tolerance",
+        "--landmark-separation",
+    ] {
+        assert!(ran.out.contains(name), "{name}");
+    }
+    // They are read, too: the complaint is about the values.
+    room.run("reconstruct p.npy -o m.npz --epsilon 0.1 --landmark-separation 0.2")
+        .expect(2)
+        .complains("--dl 0.2 is larger than --eps 0.1");
+}
+
+#[test]
+fn usage_errors_name_what_is_wrong() {
+    let room = Room::new();
+    write_points(room.path("p.npy"), &ball(50)).unwrap();
+    room.mesh("m.npz", &octahedron());
+    let reconstruct = "reconstruct p.npy -o out.npz";
+    for (arguments, complaint) in [
+        ("", "Usage:"),
+        ("fly", "unrecognized subcommand"),
+        ("reconstruct p.npy --eps 1 --dl 0.5", "--output"),
+        (reconstruct, "--eps"),
+        (&format!("{reconstruct} --eps 0.5"), "--dl"),
+        (
+            &format!("{reconstruct} --eps 0 --dl 0.2"),
+            "expected a number above 0",
+        ),
+        (
+            &format!("{reconstruct} --eps -1 --dl 0.2"),
+            "expected a number above 0",
+        ),
+        (
+            &format!("{reconstruct} --eps nan --dl 0.2"),
+            "expected a finite number",
+        ),
+        (
+            &format!("{reconstruct} --eps x --dl 0.2"),
+            "expected a number",
+        ),
+        (
+            &format!("{reconstruct} --eps 1 --dl inf"),
+            "expected a finite number",
+        ),
+        (
+            &format!("{reconstruct} --eps 1 --dl 0.5 --dt 1"),
+            "above 0 and below 1",
+        ),
+        (&format!("{reconstruct} --eps 1 --dl 0.5 --dp 0"), "--dp"),
+        (&format!("{reconstruct} --eps 1 --dl 0.5 --ep -0.1"), "--ep"),
+        (
+            &format!("{reconstruct} --eps 1 --dl 0.5 --seed -1"),
+            "--seed",
+        ),
+        (
+            &format!("{reconstruct} --eps 1 --dl 0.5 --method best"),
+            "cells, paper",
+        ),
+        (
+            &format!("{reconstruct} --eps 1 --dl 2"),
+            "--dl 2 is larger than --eps 1",
+        ),
+        (
+            &format!("{reconstruct} --eps 1 --dl 0.5 --tri-eps 0.5"),
+            "1.5 is a good value",
+        ),
+        (
+            &format!("{reconstruct} --eps 1 --dl 0.5 --ep 1"),
+            "--ep 1 is not smaller than --eps 1",
+        ),
+        (
+            "reconstruct p.npy -o no/m.npz --eps 1 --dl 0.5",
+            "there is no folder no",
+        ),
+        (
+            "reconstruct p.npy -o m.stl --eps 1 --dl 0.5",
+            "extension .stl, expected one of .npz",
+        ),
+        (
+            &format!("{reconstruct} --eps 1 --dl 0.5 --picture a.gif"),
+            "expected one of .html, .png",
+        ),
+        (
+            &format!("{reconstruct} --eps 1 --dl 0.5 --report no/r.json"),
+            "there is no folder no",
+        ),
+        (
+            "reconstruct m.npz -o m.npz --eps 1 --dl 0.5",
+            "would be overwritten",
+        ),
+        ("sample", "<SURFACE>"),
+        ("sample sphere", "--output"),
+        ("sample sphere -n 0 -o a.npy", "0"),
+        ("sample sphere -n 4000000000 -o a.npy", "too many"),
+        ("sample sphere --noise -1 -o a.npy", "at least 0"),
+        ("sample sphere --thin 0 -o a.npy", "above 0"),
+        (
+            "sample sphere --embed 2 -o a.npy",
+            "the surface lies in R^3",
+        ),
+        ("sample sphere -o no/a.npy", "there is no folder no"),
+        ("sample sphere -o a.png", "expected one of .npy"),
+        (
+            "sample sphere -o a.npy --boundary-out b.npy",
+            "sphere has no boundary",
+        ),
+        (
+            "sample moebius -o a.npy --boundary-out a.npy",
+            "two outputs have this name",
+        ),
+        ("sample teapot -o a.npy", "two_spheres"),
+        (
+            "sample cyclo-octane --parameter-uniform -o a.npy",
+            "no parameters",
+        ),
+        ("check none.npz", "no such file"),
+        ("check p.npy", "expected one of .npz"),
+        ("check m.npz --dl 0", "above 0"),
+        ("view m.npz -o a.jpg", "expected one of .html, .png"),
+        ("view m.npz -o a.png --size 5", "WIDTHxHEIGHT"),
+        ("view m.npz -o a.png --layout best", "pca, isomap, xyz"),
+        ("convert m.npz a.txt", "expected one of .npz"),
+        ("convert m.npz m.npz", "would be overwritten"),
+        ("paper --only teapot", "expected one of sphere"),
+        ("paper --seeds 0", "0"),
+        ("demo -o no/demo", "there is no folder no"),
+        ("demo -o p.npy", "is a file"),
+    ] {
+        room.run(arguments).expect(2).complains(complaint);
+    }
+    assert_eq!(room.files(), ["m.npz", "p.npy"]);
+}
+
+// Bad input
+
+/// A `.npy` file of float64 with a header of its own.
+fn npy(header: &str, numbers: &[f64]) -> Vec<u8> {
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    let text = format!("{header:<117}\n");
+    bytes.extend((text.len() as u16).to_le_bytes());
+    bytes.extend(text.as_bytes());
+    bytes.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
+    bytes
+}
+
+fn header(rows: usize, columns: usize) -> String {
+    format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}")
+}
+
+#[test]
+fn bad_points_are_refused_with_their_place() {
+    let room = Room::new();
+    let good: Vec<f64> = (0..60).map(f64::from).collect();
+    let mut nan = good.clone();
+    nan[10] = f64::NAN;
+    let mut infinite = good.clone();
+    infinite[5] = f64::INFINITY;
+    room.write("good.npy", npy(&header(20, 3), &good));
+    for (name, content, complaint) in [
+        ("nan.npy", npy(&header(20, 3), &nan), "row 3, column 1"),
+        (
+            "infinity.npy",
+            npy(&header(20, 3), &infinite),
+            "row 1, column 2",
+        ),
+        ("nan.csv", b"0,0,1\n1,nan,2\n".to_vec(), "line 2, column 2"),
+        (
+            "word.csv",
+            b"0,0,1\n1,2,2\n1,two,2\n".to_vec(),
+            "line 3, column 2",
+        ),
+        ("ragged.csv", b"0,0,1\n1,2\n".to_vec(), "line 2"),
+        ("column.csv", b"0\n1\n2\n".to_vec(), "column"),
+        ("empty.csv", Vec::new(), "empty"),
+        ("empty.npy", Vec::new(), "empty"),
+        ("norows.npy", npy(&header(0, 3), &[]), "point"),
+        ("column.npy", npy(&header(60, 1), &good), "column"),
+        ("truncated.npy", npy(&header(20, 3), &good[..50]), "bytes"),
+        ("lies.npy", npy(&header(1 << 60, 3), &good), "bytes"),
+        (
+            "garbage.npy",
+            b"not an array at all".to_vec(),
+            "garbage.npy",
+        ),
+        (
+            "few.csv",
+            b"0,0,1\n1,2,3\n".to_vec(),
+            "found 2 points, expected at least 8",
+        ),
+        ("points.doc", b"0,0,1\n".to_vec(), "extension .doc"),
+    ] {
+        room.write(name, content);
+        room.run(&format!(
+            "reconstruct {name} -o mesh.npz --eps 5 --dl 2 --report report.json"
+        ))
+        .expect(2)
+        .complains(complaint)
+        .complains(name);
+        assert!(!room.path("mesh.npz").exists() && !room.path("report.json").exists());
+    }
+    room.run("reconstruct absent.npy -o mesh.npz --eps 5 --dl 2")
+        .expect(2)
+        .complains("absent.npy: no such file");
+    room.write("rows.txt", "0 1 20\n");
+    room.run("reconstruct good.npy -o mesh.npz --eps 5 --dl 2 --boundary rows.txt")
+        .expect(2)
+        .complains("rows.txt: row 2 (from 0): found index 20, expected 0 to 19");
+    room.write("rows.txt", "0 -1\n");
+    room.run("reconstruct good.npy -o mesh.npz --eps 5 --dl 2 --boundary rows.txt")
+        .expect(2)
+        .complains("rows.txt");
+}
+
+#[test]
+fn bad_meshes_are_refused_with_their_place() {
+    let room = Room::new();
+    room.write("range.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
+    room.write("garbage.npz", "this is no archive");
+    for command in ["check", "view -o a.png", "convert"] {
+        for name in ["range.off", "garbage.npz"] {
+            let last = if command == "convert" { " b.npz" } else { "" };
+            room.run(&format!("{command} {name}{last}"))
+                .expect(2)
+                .complains(name);
+        }
+    }
+    assert_eq!(room.files(), ["garbage.npz", "range.off"]);
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_accident() {
+    let room = Room::new();
+    room.mesh("m.npz", &two_spheres(12));
+    for arguments in ["check m.npz --json", "sample --list", "--help"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_crosscap"))
+            .args(arguments.split_whitespace())
+            .current_dir(room.0.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {complaint}");
+    }
+}
+
+// Samples
+
+#[test]
+fn a_seed_gives_the_same_file() {
+    let room = Room::new();
+    room.run("sample torus -n 500 --seed 3 -o a.npy")
+        .expect(0)
+        .says("500 points in R^3");
+    room.run("sample torus -n 500 --seed 3 -o b.npy").expect(0);
+    room.run("sample torus -n 500 --seed 4 -o c.npy").expect(0);
+    let read = |name: &str| std::fs::read(room.path(name)).unwrap();
+    assert_eq!(read("a.npy"), read("b.npy"));
+    assert_ne!(read("a.npy"), read("c.npy"));
+    // (sqrt(x^2 + y^2) - 2)^2 + z^2 = 1
+    for p in room.points("a.npy").iter() {
+        let off = (p[0].hypot(p[1]) - 2.0).hypot(p[2]) - 1.0;
+        assert!(off.abs() < 1e-12, "{p:?}");
+    }
+}
+
+#[test]
+fn samples_are_thinned_turned_and_shaken() {
+    let room = Room::new();
+    room.run("sample sphere -n 2000 --thin 0.2 -o thin.csv")
+        .expect(0);
+    let thin = room.points("thin.csv");
+    assert!(thin.len() > 100 && thin.len() < 700, "{}", thin.len());
+    for a in 0..thin.len() {
+        for b in 0..a {
+            assert!(thin.squared_distance(a, b).sqrt() >= 0.2);
+        }
+    }
+    room.run("sample sphere -n 300 --embed 7 -o wide.npy")
+        .expect(0)
+        .says("R^7");
+    room.run("sample sphere -n 300 -o plain.npy").expect(0);
+    let (wide, plain) = (room.points("wide.npy"), room.points("plain.npy"));
+    assert_eq!(wide.dimension(), 7);
+    for k in 1..300 {
+        let change = wide.squared_distance(0, k) - plain.squared_distance(0, k);
+        assert!(change.abs() < 1e-12);
+    }
+    room.run("sample sphere -n 300 --embed 7 --noise 0.01 -o noisy.npy")
+        .expect(0);
+    let noisy = room.points("noisy.npy");
+    let moved = (0..300).flat_map(|k| {
+        let (a, b) = (noisy.point(k), wide.point(k));
+        a.iter()
+            .zip(b)
+            .map(|(a, b)| (a - b) * (a - b))
+            .collect::<Vec<_>>()
+    });
+    let deviation = (moved.sum::<f64>() / 2100.0).sqrt();
+    assert!((0.009..0.011).contains(&deviation), "{deviation}");
+}
+
+#[test]
+fn boundary_points_come_with_their_rows() {
+    let room = Room::new();
+    room.run("sample hemisphere -n 1000 -o plain.npy").expect(0);
+    room.run("sample hemisphere -n 1000 -o points.npy --boundary-out rows.npy")
+        .expect(0)
+        .says("on the boundary");
+    let rows = read_indices(room.path("rows.npy")).unwrap();
+    let points = room.points("points.npy");
+    assert_eq!(room.points("plain.npy").len(), 1000);
+    assert!(rows.len() > 50);
+    assert_eq!(points.len(), 1000 + rows.len());
+    for row in rows {
+        let p = points.point(row);
+        assert!(
+            p[2].abs() < 1e-12 && (p[0].hypot(p[1]) - 1.0).abs() < 1e-12,
+            "{p:?}"
+        );
+    }
+}
+
+#[test]
+fn the_list_has_the_papers_surfaces() {
+    let ran = Room::new().run("sample --list").expect(0);
+    for name in [
+        "sphere",
+        "torus",
+        "double_torus",
+        "moebius",
+        "klein_r5",
+        "rp2_r6",
+        "two_spheres",
+        "klein_immersion",
+        "henneberg",
+        "cyclo-octane",
+    ] {
+        assert!(ran.out.contains(name), "{name}");
+    }
+}
+
+#[test]
+fn conformations_keep_their_bonds() {
+    let room = Room::new();
+    room.run("sample cyclo-octane -n 100 -o ring.npy")
+        .expect(0)
+        .says("100 points in R^24");
+    for p in room.points("ring.npy").iter() {
+        for atom in 0..8 {
+            let (a, b) = (3 * atom, 3 * ((atom + 1) % 8));
+            let bond: f64 = (0..3).map(|k| (p[a + k] - p[b + k]).powi(2)).sum();
+            assert!((bond.sqrt() - 1.52).abs() < 1e-6);
+        }
+    }
+}
+
+// Checks
+
+#[test]
+fn a_good_mesh_is_verified() {
+    let room = Room::new();
+    room.mesh("sphere.npz", &octahedron());
+    room.run("check sphere.npz")
+        .expect(0)
+        .says("1, 0, 1 over Q")
+        .says("One sphere.")
+        .says("verified");
+    room.mesh("spheres.npz", &two_spheres(12));
+    let found = room.run("check spheres.npz --json").expect(0).json();
+    assert_eq!(found["verified"], true);
+    assert_eq!(found["orientable"], true);
+    assert_eq!(
+        found["homology"]["betti_rational"],
+        serde_json::json!([1, 0, 3])
+    );
+    assert_eq!(found["homology"]["torsion"], serde_json::json!([]));
+    assert_eq!(found["certificate"]["edges"]["by_triangles"]["4"], 12);
+    assert_eq!(found["certificate"]["links"]["census"]["double"], 12);
+    assert_eq!(found["pieces"]["pieces"].as_array().unwrap().len(), 2);
+    assert_eq!(found["pieces"]["curves"][0]["circle"], true);
+    assert!(
+        found["certificate"]["quality"]["min_angle"]["min"]
+            .as_f64()
+            .unwrap()
+            > 5.0
+    );
+}
+
+#[test]
+fn torsion_and_one_sidedness_are_told() {
+    // The projective plane on six vertices, in general position in R^5.
+    let triangles = vec![
+        [0, 1, 2],
+        [0, 2, 3],
+        [0, 3, 4],
+        [0, 4, 5],
+        [0, 1, 5],
+        [1, 2, 4],
+        [2, 4, 5],
+        [2, 3, 5],
+        [1, 3, 5],
+        [1, 3, 4],
+    ];
+    let mut places = vec![0.0; 30];
+    (1..6).for_each(|k| places[5 * k + k - 1] = 1.0);
+    let room = Room::new();
+    room.mesh("plane.npz", &mesh(5, places, triangles, vec![]));
+    let found = room.run("check plane.npz --json").json();
+    assert_eq!(
+        found["homology"]["betti_rational"],
+        serde_json::json!([1, 0, 0])
+    );
+    assert_eq!(
+        found["homology"]["betti_mod2"],
+        serde_json::json!([1, 1, 1])
+    );
+    assert_eq!(found["homology"]["torsion"], serde_json::json!(["2"]));
+    assert_eq!(found["orientable"], false);
+}
+
+#[test]
+fn a_broken_mesh_is_refused_with_place_and_advice() {
+    let room = Room::new();
+    let whole = octahedron();
+    let holed = mesh(
+        3,
+        whole.vertices.coordinates().to_vec(),
+        whole.complex.triangles[1..].to_vec(),
+        vec![],
+    );
+    room.mesh("hole.npz", &holed);
+    room.run("check hole.npz")
+        .expect(1)
+        .says("first at edge")
+        .says("To change:")
+        .complains("hole.npz: not verified");
+    let found = room.run("check hole.npz --json").expect(1).json();
+    assert_eq!(found["verified"], false);
+    let kinds = found["certificate"]["edges"]["violations"]
+        .as_array()
+        .unwrap();
+    assert!(!kinds.is_empty());
+}
+
+#[test]
+fn points_count_in_a_check() {
+    let room = Room::new();
+    room.mesh("sphere.npz", &octahedron());
+    let mut points = octahedron().vertices.coordinates().to_vec();
+    write_points(
+        room.path("near.csv"),
+        &PointCloud::new(3, points.clone()).unwrap(),
+    )
+    .unwrap();
+    points.extend([9.0, 9.0, 9.0]);
+    write_points(room.path("far.csv"), &PointCloud::new(3, points).unwrap()).unwrap();
+    room.run("check sphere.npz --points near.csv --dl 1.4")
+        .expect(0);
+    room.run("check sphere.npz --points far.csv --dl 1.4")
+        .expect(1)
+        .says("input points far from the mesh");
+    room.write("plane.csv", "0,0\n1,0\n");
+    room.run("check sphere.npz --points plane.csv")
+        .expect(2)
+        .complains("plane.csv: found points in R^2, expected R^3");
+}
+
+#[test]
+fn crossings_are_taken_apart() {
+    let room = Room::new();
+    room.mesh("spheres.npz", &two_spheres(12));
+    room.run("check spheres.npz --normalization apart.npz")
+        .expect(0);
+    let apart = read_mesh(room.path("apart.npz")).unwrap();
+    assert_eq!(
+        apart.mesh.complex.vertices,
+        two_spheres(12).complex.vertices + 12
+    );
+    assert!(apart.mesh.complex.curve_edges.is_empty());
+    let homology = crosscap_algorithms::homology::homology(&apart.mesh.complex).unwrap();
+    assert_eq!(homology.betti_rational, [2, 0, 2]);
+}
+
+// Conversions and pictures
+
+#[test]
+fn meshes_survive_a_round_trip() {
+    let room = Room::new();
+    let spheres = two_spheres(8);
+    room.mesh("a.npz", &spheres);
+    let mut from = "a.npz".to_string();
+    for to in ["b.vtu", "c.ply", "d.obj", "e.off", "f.npz"] {
+        room.run(&format!("convert {from} {to}"))
+            .expect(0)
+            .says("28 vertices, 64 triangles");
+        from = to.into();
+    }
+    let back = read_mesh(room.path("f.npz")).unwrap().mesh;
+    assert_eq!(back.complex, spheres.complex);
+    assert_eq!(back.vertices, spheres.vertices);
+}
+
+#[test]
+fn meshes_of_four_dimensions_are_laid_out() {
+    let room = Room::new();
+    let torus = flat_torus(12);
+    room.mesh("a.npz", &torus);
+    for layout in ["", "--layout pca", "--layout isomap", "--layout xyz"] {
+        room.run(&format!("convert a.npz b.ply {layout}")).expect(0);
+        let flat = read_mesh(room.path("b.ply")).unwrap().mesh;
+        assert_eq!(flat.vertices.dimension(), 3);
+        assert_eq!(flat.complex.triangles, torus.complex.triangles);
+    }
+    // These keep all coordinates.
+    for name in ["c.npz", "c.vtu"] {
+        room.run(&format!("convert a.npz {name}")).expect(0);
+        assert_eq!(
+            read_mesh(room.path(name)).unwrap().mesh.vertices,
+            torus.vertices
+        );
+    }
+}
+
+#[test]
+fn pictures_are_pages_and_images() {
+    let room = Room::new();
+    room.mesh("spheres.npz", &two_spheres(12));
+    room.mesh("torus.npz", &flat_torus(12));
+    for name in ["spheres", "torus"] {
+        room.run(&format!("view {name}.npz -o {name}.html"))
+            .expect(0)
+            .says("piece");
+        let page = std::fs::read_to_string(room.path(&format!("{name}.html"))).unwrap();
+        assert!(page.starts_with("<!DOCTYPE html>"));
+        for size in ["200x150", "64x64"] {
+            room.run(&format!("view {name}.npz -o {name}.png --size {size}"))
+                .expect(0);
+            let image = std::fs::read(room.path(&format!("{name}.png"))).unwrap();
+            assert_eq!(image_size(&image), size);
+        }
+    }
+    room.run("view torus.npz -o pca.png --layout pca --size 64x64")
+        .expect(0);
+    let read = |name: &str| std::fs::read(room.path(name)).unwrap();
+    assert_ne!(read("pca.png"), read("torus.png"));
+}
+
+/// Width and height from the header of a PNG image.
+fn image_size(image: &[u8]) -> String {
+    assert_eq!(&image[1..4], b"PNG");
+    let side = |at: usize| u32::from_be_bytes(image[at..at + 4].try_into().unwrap());
+    format!("{}x{}", side(16), side(20))
+}
+
+// Reconstruction
+
+const SPHERE: &str = "--eps 0.5 --dl 0.25 --surface";
+
+fn sphere_points(room: &Room) {
+    room.run("sample sphere -n 3000 --seed 1 -o points.npy")
+        .expect(0);
+}
+
+#[test]
+fn a_sphere_is_reconstructed() {
+    let room = Room::new();
+    sphere_points(&room);
+    room.run(&format!(
+        "reconstruct points.npy -o mesh.npz {SPHERE} --report report.json --picture page.html"
+    ))
+    .expect(0)
+    .says("verified")
+    .says("Betti numbers 1, 0, 1 over Q")
+    .says("One sphere.");
+    room.run("check mesh.npz --points points.npy").expect(0);
+    let file = read_mesh(room.path("mesh.npz")).unwrap();
+    let points = room.points("points.npy");
+    for (vertex, &row) in file.mesh.point_index.iter().enumerate() {
+        assert_eq!(file.mesh.vertices.point(vertex), points.point(row as usize));
+    }
+    assert_eq!(file.extras.metadata["dl"], 0.25);
+    assert_eq!(file.extras.metadata["verified"], true);
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(room.path("report.json")).unwrap()).unwrap();
+    assert_eq!(report["verified"], true);
+    assert_eq!(report["points"], 3000);
+    assert_eq!(report["parameters"]["seed"], 0);
+    assert_eq!(
+        report["homology"]["betti_mod2"],
+        serde_json::json!([1, 0, 1])
+    );
+    assert_eq!(report["input"]["file"], "points.npy");
+    let page = std::fs::read_to_string(room.path("page.html")).unwrap();
+    assert!(page.starts_with("<!DOCTYPE html>"));
+}
+
+#[test]
+fn the_same_input_gives_the_same_mesh_on_any_number_of_threads() {
+    let room = Room::new();
+    sphere_points(&room);
+    for (name, more) in [
+        ("a", "--threads 1"),
+        ("b", "--threads 2"),
+        ("c", "--seed 9"),
+    ] {
+        room.run(&format!(
+            "reconstruct points.npy -o {name}.npz {SPHERE} {more}"
+        ))
+        .expect(0);
+    }
+    let read = |name: &str| std::fs::read(room.path(name)).unwrap();
+    assert_eq!(read("a.npz"), read("b.npz"));
+    assert_ne!(read("a.npz"), read("c.npz"));
+}
+
+#[test]
+fn a_given_boundary_is_kept() {
+    let room = Room::new();
+    room.run("sample hemisphere -n 3000 -o points.npy --boundary-out rim.npy")
+        .expect(0);
+    room.run("reconstruct points.npy -o mesh.npz --eps 0.4 --dl 0.2 --surface --boundary rim.npy")
+        .expect(0)
+        .says("1, 0, 0 over Q")
+        .says("disc");
+    let complex = read_mesh(room.path("mesh.npz")).unwrap().mesh.complex;
+    assert!(complex.curve_edges.iter().all(|e| e.cells == 1));
+    assert!(complex.curve_edges.len() > 10);
+}
+
+#[test]
+fn duplicates_do_no_harm() {
+    let room = Room::new();
+    sphere_points(&room);
+    let points = room.points("points.npy");
+    let rows: Vec<usize> = (0..3000).chain(0..500).collect();
+    write_points(room.path("twice.npy"), &points.select(&rows)).unwrap();
+    room.run(&format!(
+        "reconstruct twice.npy -o mesh.npz {SPHERE} --report report.json"
+    ))
+    .expect(0)
+    .says("500 duplicate points");
+}
+
+#[test]
+fn no_surface_no_file() {
+    let room = Room::new();
+    write_points(room.path("ball.npy"), &ball(3000)).unwrap();
+    let command = "reconstruct ball.npy -o mesh.npz --eps 0.4 --dl 0.2";
+    let more = "--report report.json --picture page.html";
+    for kind in ["", "--surface"] {
+        let ran = room.run(&format!("{command} {kind} {more}")).expect(1);
+        assert!(!ran.err.is_empty());
+        assert_eq!(room.files(), ["ball.npy"], "{kind}");
+    }
+    room.run(&format!("{command} --surface {more} --keep-unverified"))
+        .expect(1)
+        .says("not verified")
+        .complains("this mesh is not verified");
+    assert_eq!(
+        room.files(),
+        ["ball.npy", "mesh.npz", "page.html", "report.json"]
+    );
+    room.run("check mesh.npz --points ball.npy").expect(1);
+}
+
+#[test]
+fn a_failure_leaves_the_old_file_alone() {
+    let room = Room::new();
+    write_points(room.path("ball.npy"), &ball(3000)).unwrap();
+    room.write("mesh.npz", "precious");
+    room.run("reconstruct ball.npy -o mesh.npz --eps 0.4 --dl 0.2 --surface")
+        .expect(1);
+    assert_eq!(std::fs::read(room.path("mesh.npz")).unwrap(), b"precious");
+}
+
+// The paper's table and the demonstration
+
+#[test]
+fn a_row_of_the_papers_table() {
+    let room = Room::new();
+    let found = room
+        .run("paper --only sphere --seeds 2 --json")
+        .expect(0)
+        .json();
+    let row = &found["surfaces"][0];
+    assert_eq!(row["surface"], "sphere");
+    assert_eq!((&row["ok"], &row["silent_wrong"]), (&2.into(), &0.into()));
+    assert_eq!(row["paper_landmarks"], 886);
+    assert_eq!(row["runs"].as_array().unwrap().len(), 2);
+    let k = row["mean_neighbors"].as_f64().unwrap();
+    assert!((20.0..45.0).contains(&k), "{k}");
+    room.run("paper --only sphere --seeds 1")
+        .expect(0)
+        .says("(886)")
+        .says("1/1");
+}
+
+#[test]
+fn the_demonstration_leaves_something_to_look_at() {
+    let room = Room::new();
+    room.run("demo -o shown")
+        .expect(0)
+        .says("1, 0, 3 over Q")
+        .says("Two spheres")
+        .says("verified");
+    let at = |name: &str| room.path("shown").join(name);
+    assert!(
+        std::fs::read_to_string(at("index.html"))
+            .unwrap()
+            .starts_with("<!DOCTYPE html>")
+    );
+    assert_eq!(
+        image_size(&std::fs::read(at("picture.png")).unwrap()),
+        "1200x900"
+    );
+    assert!(only_files(
+        &room.path("shown"),
+        &["index.html", "mesh.npz", "picture.png", "report.json"]
+    ));
+    room.run("check shown/mesh.npz").expect(0);
+}
+
+fn only_files(folder: &Path, names: &[&str]) -> bool {
+    let all = std::fs::read_dir(folder).unwrap();
+    let mut found: Vec<String> = all
+        .map(|f| f.unwrap().file_name().into_string().unwrap())
+        .collect();
+    found.sort();
+    found == names
+}
