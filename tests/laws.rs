@@ -85,8 +85,14 @@ fn oracles() {
     laws::oracle(s, |c| (kd_tree::<f32>(c), kd_tree::<f32>(c))).unwrap();
     laws::oracle(s, |c| (euclidean::<f64>(c), kd_tree::<f64>(c))).unwrap();
     laws::oracle(s, |c| (euclidean::<f32>(c), kd_tree::<f32>(c))).unwrap();
-    laws::oracle(s, |c| (given::<f64>(c), BruteForceOracle::new(given::<f64>(c)))).unwrap();
-    laws::oracle(s, |c| (lifted::<f32>(c), BruteForceOracle::new(lifted::<f32>(c)))).unwrap();
+    laws::oracle(s, |c| {
+        (given::<f64>(c), BruteForceOracle::new(given::<f64>(c)))
+    })
+    .unwrap();
+    laws::oracle(s, |c| {
+        (lifted::<f32>(c), BruteForceOracle::new(lifted::<f32>(c)))
+    })
+    .unwrap();
 }
 
 #[test]
@@ -119,7 +125,12 @@ fn exact_to(
 
 #[test]
 fn one_sheet() {
-    laws::model(&settings(), &OneSheet, &Instances::new(&instances::flat_sheet)).unwrap();
+    laws::model(
+        &settings(),
+        &OneSheet,
+        &Instances::new(&instances::flat_sheet),
+    )
+    .unwrap();
 }
 
 #[test]

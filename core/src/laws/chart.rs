@@ -78,7 +78,11 @@ impl Bent {
                 let start = rows.len();
                 rows.resize(start + d + 1, 0.0);
                 rows[start + axis] = sign;
-                rows[start + d] = if (rows.len() / (d + 1)).is_multiple_of(4) { height } else { -height };
+                rows[start + d] = if (rows.len() / (d + 1)).is_multiple_of(4) {
+                    height
+                } else {
+                    -height
+                };
             }
         }
         for point in &self.points {
@@ -118,7 +122,11 @@ fn distances(chart: &Chart, count: usize, dimension: usize) -> Result<Vec<f64>, 
         chart.dimension
     );
     let bad = chart.coordinates.iter().position(|x| !x.is_finite());
-    ensure!(bad.is_none(), "coordinate {bad:?} is not finite: {:?}", chart.coordinates);
+    ensure!(
+        bad.is_none(),
+        "coordinate {bad:?} is not finite: {:?}",
+        chart.coordinates
+    );
     ensure!(
         (0.0..=1.0).contains(&chart.distortion),
         "the distortion is {}",
@@ -202,7 +210,9 @@ pub fn chart(settings: &Settings, chart: &impl LocalChart) -> Result<(), LawBrok
             _ => all[at] = f64::INFINITY,
         }
         match chart.chart(*count, &all, 1) {
-            Ok(_) => Err(format!("{count} points with the distances {all:?} got a chart")),
+            Ok(_) => Err(format!(
+                "{count} points with the distances {all:?} got a chart"
+            )),
             Err(e) if !e.is_input() => Err(format!("'{e}' does not say that the input is bad")),
             Err(_) => Ok(()),
         }
@@ -227,20 +237,24 @@ pub fn chart(settings: &Settings, chart: &impl LocalChart) -> Result<(), LawBrok
         Ok(())
     })?;
     let keys = vec(any::<u16>(), 40);
-    MOTION.holds(settings, &(bent(), 0.0..0.4_f64, keys), |(bent, height, keys)| {
-        let cloud = bent.at(*height);
-        let (first, found) = drawn(&cloud, bent.dimension)?;
-        let (again, _) = drawn(&cloud, bent.dimension)?;
-        ensure!(first == again, "asked twice: {first:?}, then {again:?}");
-        let mut order = vec![0];
-        order.extend(ranks(&keys[..cloud.len() - 1]).iter().map(|k| k + 1));
-        let (_, moved) = drawn(&cloud.select(&order), bent.dimension)?;
-        let n = order.len();
-        let expected: Vec<f64> = (0..n * n)
-            .map(|k| found[order[k / n] * n + order[k % n]])
-            .collect();
-        agree(&moved, &expected, CLOSE).map_err(|e| format!("in the order {order:?} {e}"))
-    })
+    MOTION.holds(
+        settings,
+        &(bent(), 0.0..0.4_f64, keys),
+        |(bent, height, keys)| {
+            let cloud = bent.at(*height);
+            let (first, found) = drawn(&cloud, bent.dimension)?;
+            let (again, _) = drawn(&cloud, bent.dimension)?;
+            ensure!(first == again, "asked twice: {first:?}, then {again:?}");
+            let mut order = vec![0];
+            order.extend(ranks(&keys[..cloud.len() - 1]).iter().map(|k| k + 1));
+            let (_, moved) = drawn(&cloud.select(&order), bent.dimension)?;
+            let n = order.len();
+            let expected: Vec<f64> = (0..n * n)
+                .map(|k| found[order[k / n] * n + order[k % n]])
+                .collect();
+            agree(&moved, &expected, CLOSE).map_err(|e| format!("in the order {order:?} {e}"))
+        },
+    )
 }
 
 #[cfg(test)]
@@ -314,7 +328,10 @@ mod tests {
                 Fault::None | Fault::Open => {}
                 Fault::Overflowing => {
                     let greatest = distances.iter().fold(0.0, |m: f64, d| m.max(*d));
-                    chart.coordinates.iter_mut().for_each(|x| *x = *x / greatest * greatest);
+                    chart
+                        .coordinates
+                        .iter_mut()
+                        .for_each(|x| *x = *x / greatest * greatest);
                 }
                 Fault::NotSquared => chart = scaled(count, distances, dimension, 1),
                 Fault::NeverDistorted => chart.distortion = 0.0,

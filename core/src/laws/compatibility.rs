@@ -95,7 +95,11 @@ pub fn reference_meeting(pair: &LatticePair) -> Meeting {
         }
         _ => true,
     };
-    if clean { Meeting::CommonFace } else { Meeting::Overlap }
+    if clean {
+        Meeting::CommonFace
+    } else {
+        Meeting::Overlap
+    }
 }
 
 /// Whether no three of the corners are in line, so that rounding decides nothing.
@@ -103,9 +107,8 @@ fn clear(pair: &LatticePair) -> bool {
     let mut corners: Vec<[i32; 2]> = pair.a.iter().chain(&pair.b).copied().collect();
     corners.sort_unstable();
     corners.dedup();
-    (0..corners.len()).all(|i| {
-        (0..i).all(|j| (0..j).all(|k| area(corners[i], corners[j], corners[k]) != 0))
-    })
+    (0..corners.len())
+        .all(|i| (0..i).all(|j| (0..j).all(|k| area(corners[i], corners[j], corners[k]) != 0)))
 }
 
 /// Puts a compatibility test through its laws, on pairs of lattice triangles that share, touch, cross
@@ -130,14 +133,22 @@ pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Resu
     SYMMETRY.holds(settings, &pairs, |pair| {
         let [a, b] = pair.triangles(|p| p);
         let (there, back) = (test.meeting(&a, &b), test.meeting(&b, &a));
-        ensure!(there == back, "meeting(a, b) is {there:?}, meeting(b, a) is {back:?}");
+        ensure!(
+            there == back,
+            "meeting(a, b) is {there:?}, meeting(b, a) is {back:?}"
+        );
         Ok(())
     })?;
     let compare = |pair: &LatticePair, what: &str, place: &dyn Fn([f64; 2]) -> [f64; 2]| {
         let [a, b] = pair.triangles(|p| p);
         let [c, d] = pair.triangles(place);
         let (before, after) = (test.meeting(&a, &b), test.meeting(&c, &d));
-        ensure!(before == after, "{before:?} became {after:?} by {what}: {:?}, {:?}", c.places, d.places);
+        ensure!(
+            before == after,
+            "{before:?} became {after:?} by {what}: {:?}, {:?}",
+            c.places,
+            d.places
+        );
         Ok(())
     };
     let motions = (
@@ -147,29 +158,43 @@ pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Resu
         0.0..std::f64::consts::TAU,
     );
     let moved = (lattice_pairs(), motions);
-    MOTION.holds(settings, &moved, |(pair, (quarters, mirrored, shift, angle))| {
-        let shift = shift.map(f64::from);
-        compare(pair, "quarter turns and a shift", &|[x, y]| {
-            let x = if *mirrored { -x } else { x };
-            let [x, y] = (0..*quarters).fold([x, y], |[x, y], _| [-y, x]);
-            [x + shift[0], y + shift[1]]
-        })?;
-        if clear(pair) {
-            let (sin, cos) = angle.sin_cos();
-            compare(pair, "a rotation and a shift", &|[x, y]| {
-                [cos * x - sin * y + shift[0] / 7.0, sin * x + cos * y + shift[1] / 7.0]
+    MOTION.holds(
+        settings,
+        &moved,
+        |(pair, (quarters, mirrored, shift, angle))| {
+            let shift = shift.map(f64::from);
+            compare(pair, "quarter turns and a shift", &|[x, y]| {
+                let x = if *mirrored { -x } else { x };
+                let [x, y] = (0..*quarters).fold([x, y], |[x, y], _| [-y, x]);
+                [x + shift[0], y + shift[1]]
             })?;
-        }
-        Ok(())
-    })?;
-    SCALE.holds(settings, &(lattice_pairs(), -40..=40_i32), |(pair, exponent)| {
-        let factor = f64::from(*exponent).exp2();
-        compare(pair, "scaling", &|p| p.map(|x| x * factor))
-    })?;
+            if clear(pair) {
+                let (sin, cos) = angle.sin_cos();
+                compare(pair, "a rotation and a shift", &|[x, y]| {
+                    [
+                        cos * x - sin * y + shift[0] / 7.0,
+                        sin * x + cos * y + shift[1] / 7.0,
+                    ]
+                })?;
+            }
+            Ok(())
+        },
+    )?;
+    SCALE.holds(
+        settings,
+        &(lattice_pairs(), -40..=40_i32),
+        |(pair, exponent)| {
+            let factor = f64::from(*exponent).exp2();
+            compare(pair, "scaling", &|p| p.map(|x| x * factor))
+        },
+    )?;
     REFERENCE.holds(settings, &pairs, |pair| {
         let [a, b] = pair.triangles(|p| p);
         let (found, expected) = (test.meeting(&a, &b), reference_meeting(pair));
-        ensure!(found == expected, "meeting(a, b) is {found:?}, expected {expected:?}");
+        ensure!(
+            found == expected,
+            "meeting(a, b) is {found:?}, expected {expected:?}"
+        );
         Ok(())
     })?;
     AGREEMENT.holds(settings, &pairs, |pair| {
@@ -207,7 +232,11 @@ mod tests {
             let turn = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
                 (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
             };
-            let tolerance = if self.0 == Fault::Tolerance { 1e-9 } else { 0.0 };
+            let tolerance = if self.0 == Fault::Tolerance {
+                1e-9
+            } else {
+                0.0
+            };
             let touching = self.0 == Fault::TouchingAllowed;
             let shares = a.corners.iter().filter(|c| b.corners.contains(c)).count();
             // The line of a side of one with all that is not shared of the other strictly beyond.
@@ -217,7 +246,9 @@ mod tests {
                     let inside = turn(p, q, a.places[(i + 2) % 3]).signum();
                     (0..3).all(|k| {
                         let at = turn(p, q, b.places[k]) * inside;
-                        let on = [i, (i + 1) % 3].iter().any(|&e| a.corners[e] == b.corners[k]);
+                        let on = [i, (i + 1) % 3]
+                            .iter()
+                            .any(|&e| a.corners[e] == b.corners[k]);
                         on || at < -tolerance || touching && at <= 0.0
                     })
                 })
@@ -231,7 +262,13 @@ mod tests {
                     p != apex && turn(apex, u, p) * way >= 0.0 && turn(apex, p, v) * way >= 0.0
                 })
             };
-            let apart = |a, b| if shares == 1 { spread(a, b) } else { parted(a, b) };
+            let apart = |a, b| {
+                if shares == 1 {
+                    spread(a, b)
+                } else {
+                    parted(a, b)
+                }
+            };
             let both = shares == 1;
             if shares == 3 {
                 Meeting::CommonFace

@@ -159,7 +159,10 @@ fn same<S: Scalar>(
 /// }
 /// laws::estimator(&Settings::default(), &Doubling).unwrap();
 /// ```
-pub fn estimator<D: DimensionEstimator>(settings: &Settings, estimator: &D) -> Result<(), LawBroken> {
+pub fn estimator<D: DimensionEstimator>(
+    settings: &Settings,
+    estimator: &D,
+) -> Result<(), LawBroken> {
     let usable = |estimate: &DimensionEstimate| -> Outcome {
         ensure!(
             estimate.value >= 0.0 && estimate.value.is_finite(),
@@ -186,16 +189,17 @@ pub fn estimator<D: DimensionEstimator>(settings: &Settings, estimator: &D) -> R
         Ok(())
     })?;
     let ask = |cloud: &PointCloud<f64>, center| Ball::new(cloud, center).estimate(estimator);
-    let moved = |law: &'static Law, dimensions: usize, change: fn(&Motion, f64) -> (Motion, f64)| {
-        let inputs = (flat_samples(), motions(), -6..=6_i32, 0..=dimensions);
-        law.holds(settings, &inputs, |(sample, motion, exponent, more)| {
-            let FlatSample { cloud, .. } = sample;
-            let (motion, factor) = change(motion, 10_f64.powi(*exponent));
-            let dimension = cloud.dimension() + more;
-            let image = motion.image(cloud, dimension, factor);
-            same::<D::Scalar>(&ask(cloud, 0), &ask(&image, 0))
-        })
-    };
+    let moved =
+        |law: &'static Law, dimensions: usize, change: fn(&Motion, f64) -> (Motion, f64)| {
+            let inputs = (flat_samples(), motions(), -6..=6_i32, 0..=dimensions);
+            law.holds(settings, &inputs, |(sample, motion, exponent, more)| {
+                let FlatSample { cloud, .. } = sample;
+                let (motion, factor) = change(motion, 10_f64.powi(*exponent));
+                let dimension = cloud.dimension() + more;
+                let image = motion.image(cloud, dimension, factor);
+                same::<D::Scalar>(&ask(cloud, 0), &ask(&image, 0))
+            })
+        };
     let still = |_: &Motion, factor: f64| {
         let none = Motion {
             angles: vec![],
@@ -287,7 +291,10 @@ mod tests {
     #[test]
     fn nonsense_is_caught() {
         // The logarithm of the distance of a copy.
-        catches(put(|around| mean(around, |n| n.distance.ln().abs())), &ANSWER);
+        catches(
+            put(|around| mean(around, |n| n.distance.ln().abs())),
+            &ANSWER,
+        );
     }
 
     #[test]
@@ -296,14 +303,22 @@ mod tests {
             let cloud = around.cloud.unwrap();
             let x = |i: usize| cloud.point(i)[0];
             let spread = mean(around, |n| (x(n.index) - x(around.center)).abs());
-            share(around) + if around.radius > 0.0 { spread / around.radius } else { 0.0 }
+            share(around)
+                + if around.radius > 0.0 {
+                    spread / around.radius
+                } else {
+                    0.0
+                }
         };
         catches(put(along_x), &MOTION);
     }
 
     #[test]
     fn a_fixed_length_is_caught() {
-        catches(put(|around| share(around) + mean(around, |n| n.distance).min(1.0)), &SCALE);
+        catches(
+            put(|around| share(around) + mean(around, |n| n.distance).min(1.0)),
+            &SCALE,
+        );
     }
 
     #[test]

@@ -72,9 +72,8 @@ impl Instance {
     /// their distance from it. Each point comes with its true stratum, where that is beyond doubt.
     pub fn new(dimension: usize, radius: f64, points: &[(Vec<f64>, Option<u8>)]) -> Self {
         let center = points.first().map(|p| p.0.clone()).unwrap_or_default();
-        let inside = |p: &&(Vec<f64>, Option<u8>)| {
-            crate::squared_distance(&p.0, &center) < radius * radius
-        };
+        let inside =
+            |p: &&(Vec<f64>, Option<u8>)| crate::squared_distance(&p.0, &center) < radius * radius;
         let ordered = || {
             let outside = points.iter().filter(move |p| !inside(p));
             points.iter().filter(inside).chain(outside)
@@ -229,7 +228,11 @@ pub fn triple_point(draw: &mut Draw) -> Instance {
         q[(k + 2) % 3] = b;
         let quarter = 2 * u8::from(a > 0.0) + u8::from(b > 0.0);
         Placed {
-            point: vec![q[0] + shear[0] * q[1] + shear[1] * q[2], q[1] + shear[2] * q[2], q[2]],
+            point: vec![
+                q[0] + shear[0] * q[1] + shear[1] * q[2],
+                q[1] + shear[2] * q[2],
+                q[2],
+            ],
             stratum: 4 * k as u8 + quarter,
             margin: a.abs().min(b.abs()),
         }
@@ -243,7 +246,12 @@ pub fn crossing_in_four_dimensions(draw: &mut Draw) -> Instance {
         point: if k == 0 {
             vec![a, b, 0.0, 0.0]
         } else {
-            vec![shear[0] * a + shear[1] * b, shear[2] * a + shear[3] * b, a, b]
+            vec![
+                shear[0] * a + shear[1] * b,
+                shear[2] * a + shear[3] * b,
+                a,
+                b,
+            ]
         },
         stratum: k as u8,
         margin: a.hypot(b),
@@ -296,7 +304,11 @@ mod tests {
             let norm = |k: usize| instance.local().point(k).iter().map(|x| x * x).sum::<f64>();
             assert!((0..instance.fitted).all(|k| norm(k) < 1.0));
             assert!((instance.fitted..401).all(|k| norm(k) >= 1.0));
-            assert!(instance.fitted > 150 && instance.fitted < 395, "{}", instance.fitted);
+            assert!(
+                instance.fitted > 150 && instance.fitted < 395,
+                "{}",
+                instance.fitted
+            );
             let mut found: Vec<u8> = instance.truth.iter().copied().flatten().collect();
             found.sort_unstable();
             found.dedup();
@@ -308,7 +320,9 @@ mod tests {
     fn noise_has_the_size_that_is_asked_for() {
         let exact = flat_sheet(&mut Draw::new(1, 500));
         let noisy = exact.with_noise(3, 0.02);
-        let off: f64 = (0..noisy.len()).map(|k| noisy.local().point(k)[2].powi(2)).sum();
+        let off: f64 = (0..noisy.len())
+            .map(|k| noisy.local().point(k)[2].powi(2))
+            .sum();
         let deviation = (off / noisy.len() as f64).sqrt();
         assert!((deviation - 0.02).abs() < 0.002, "{deviation}");
     }
@@ -317,7 +331,8 @@ mod tests {
     fn principal_coordinates_keep_distances() {
         let raw = two_planes(&mut Draw::new(2, 60));
         let turned = raw.principal();
-        let squared = |i: &Instance, a, b| crate::squared_distance(i.local().point(a), i.local().point(b));
+        let squared =
+            |i: &Instance, a, b| crate::squared_distance(i.local().point(a), i.local().point(b));
         for k in 1..raw.len() {
             assert!((squared(&raw, 0, k) - squared(&turned, 0, k)).abs() < 1e-12);
         }

@@ -76,7 +76,11 @@ fn questions() -> impl Strategy<Value = Question> {
             let keys: Vec<u16> = roles[..cloud.len()].iter().map(|r| r.0).collect();
             let order = ranks(&keys);
             let with = |role: fn(u8) -> bool| {
-                order.iter().copied().filter(|&k| role(roles[k].1)).collect()
+                order
+                    .iter()
+                    .copied()
+                    .filter(|&k| role(roles[k].1))
+                    .collect()
             };
             Question {
                 candidates: with(|r| r < 3),
@@ -128,16 +132,24 @@ pub fn selector<L: LandmarkSelector>(settings: &Settings, selector: &L) -> Resul
     let questions = questions();
     let metric = |question: &Question| StraightLine(question.cloud.cast::<L::Scalar>());
     let select = |q: &Question, separation: f64| {
-        selector.select(&Scan(metric(q)), &q.candidates, &q.taken, separation, q.seed)
+        selector.select(
+            &Scan(metric(q)),
+            &q.candidates,
+            &q.taken,
+            separation,
+            q.seed,
+        )
     };
     let chosen = |q: &Question| select(q, q.separation).map_err(|e| format!("refused: {e}"));
     let bad = prop_oneof![Just(0.0), Just(-1.0), Just(f64::NAN)];
-    REFUSAL.holds(settings, &(questions, bad), |(question, separation)| {
-        match select(question, *separation) {
+    REFUSAL.holds(
+        settings,
+        &(questions, bad),
+        |(question, separation)| match select(question, *separation) {
             Err(Error::Parameter { .. }) => Ok(()),
             other => Err(format!("the separation {separation} gave {other:?}")),
-        }
-    })?;
+        },
+    )?;
     let questions = self::questions();
     SUBSET.holds(settings, &questions, |question| {
         let chosen = chosen(question)?;
@@ -155,7 +167,10 @@ pub fn selector<L: LandmarkSelector>(settings: &Settings, selector: &L) -> Resul
         for (k, &a) in chosen.iter().enumerate() {
             for &b in chosen[..k].iter().chain(&question.taken) {
                 let d = metric.distance(a, b).as_f64();
-                ensure!(d >= question.separation, "points {a} and {b} are at distance {d}");
+                ensure!(
+                    d >= question.separation,
+                    "points {a} and {b} are at distance {d}"
+                );
             }
         }
         Ok(())
@@ -231,7 +246,11 @@ mod tests {
             let (mut chosen, mut near) = (vec![], vec![]);
             for &c in &order {
                 let reach = separation as f32;
-                let reach = if self.0 == Fault::Inclusive { reach.next_up() } else { reach };
+                let reach = if self.0 == Fault::Inclusive {
+                    reach.next_up()
+                } else {
+                    reach
+                };
                 oracle.within(c, reach, &mut near);
                 let blocked = |i| {
                     chosen.contains(&i) || self.0 != Fault::TakenForgotten && taken.contains(&i)

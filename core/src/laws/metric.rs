@@ -135,7 +135,9 @@ mod tests {
     }
 
     fn put(spoil: fn(usize, usize, f64) -> f64) -> Result<(), LawBroken> {
-        metric(&Settings::default(), |cloud| Spoiled(StraightLine(cloud.clone()), spoil))
+        metric(&Settings::default(), |cloud| {
+            Spoiled(StraightLine(cloud.clone()), spoil)
+        })
     }
 
     #[test]
@@ -143,7 +145,10 @@ mod tests {
         put(|_, _, d| d).unwrap();
         put(|_, _, d| if d < 2.0 { d } else { f64::INFINITY }).unwrap_err();
         put(|a, b, _| if a == b { 0.0 } else { f64::INFINITY }).unwrap();
-        metric(&Settings::default(), |cloud| StraightLine(cloud.cast::<f32>())).unwrap();
+        metric(&Settings::default(), |cloud| {
+            StraightLine(cloud.cast::<f32>())
+        })
+        .unwrap();
     }
 
     #[test]
@@ -164,7 +169,10 @@ mod tests {
 
     #[test]
     fn a_last_bit_of_asymmetry_is_caught() {
-        catches(put(|a, b, d| if a < b { d.next_up() } else { d }), &SYMMETRY);
+        catches(
+            put(|a, b, d| if a < b { d.next_up() } else { d }),
+            &SYMMETRY,
+        );
     }
 
     #[test]

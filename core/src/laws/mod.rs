@@ -32,6 +32,7 @@
 //! | [`CompatibilityTest`](crate::CompatibilityTest) | [`compatibility()`] | the test |
 //! | [`TriangleRule`](crate::TriangleRule) | [`rule()`] | the rule |
 //! | whole reconstructions, quantities of complexes | [`reconstruction()`], [`relabelling()`] | a function |
+//! | Betti numbers | [`euler_poincare()`] | a complex and its Betti numbers |
 //!
 //! # What a failure says
 //! [`LawBroken`] names the law, shows the smallest input that was found to break it, what came out,
@@ -75,7 +76,7 @@ pub use metric::metric;
 pub use motion::{MOST_DIMENSIONS, Motion, motions};
 pub use neighborhood::oracle;
 pub use reference::{Scan, StraightLine};
-pub use result::{reconstruction, relabelling};
+pub use result::{euler_poincare, reconstruction, relabelling};
 pub use rule::rule;
 pub use settings::Settings;
 pub use singularity::{Instances, model};

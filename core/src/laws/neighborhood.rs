@@ -80,15 +80,20 @@ struct Query {
 fn queries() -> impl Strategy<Value = Query> {
     let factor = prop_oneof![3 => Just(1.0), 1 => 0.0..3.0_f64];
     let index = any::<prop::sample::Index>;
-    (clouds(1..=9, 1..=40), index(), index(), factor, 0..=42_usize).prop_map(
-        |(cloud, center, rim, factor, count)| Query {
+    (
+        clouds(1..=9, 1..=40),
+        index(),
+        index(),
+        factor,
+        0..=42_usize,
+    )
+        .prop_map(|(cloud, center, rim, factor, count)| Query {
             center: center.index(cloud.len()),
             rim: rim.index(cloud.len()),
             cloud,
             factor,
             count,
-        },
-    )
+        })
 }
 
 /// Puts an oracle through its laws, on clouds of 1 to 40 points in R^1 to R^9 with copies and ties, with
@@ -156,7 +161,11 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
         for (k, found) in found.iter().enumerate() {
             let question = question(k, radius, query);
             let left = found.iter().any(|n| n.index == 977);
-            ensure!(!left, "{question} left what was in the buffer: {}", show(found));
+            ensure!(
+                !left,
+                "{question} left what was in the buffer: {}",
+                show(found)
+            );
         }
         Ok(())
     })?;
@@ -165,11 +174,15 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
         let question = question(0, radius, query);
         for n in &found {
             let d = n.distance.as_f64();
-            ensure!(d < radius, "{question} holds point {} at distance {d}", n.index);
+            ensure!(
+                d < radius,
+                "{question} holds point {} at distance {d}",
+                n.index
+            );
         }
         let center = found.iter().any(|n| n.index == query.center);
         ensure!(
-            center || !(radius > 0.0),
+            center || radius.is_nan() || radius <= 0.0,
             "{question} does not hold its center: {}",
             show(&found)
         );
@@ -269,7 +282,11 @@ mod tests {
         }
         fn within(&self, center: usize, radius: f64, out: &mut Vec<Neighbor<f64>>) {
             let mut answer = vec![];
-            let wide = if self.1 == Fault::Inclusive { radius.next_up() } else { radius };
+            let wide = if self.1 == Fault::Inclusive {
+                radius.next_up()
+            } else {
+                radius
+            };
             self.0.within(center, wide, &mut answer);
             match self.1 {
                 Fault::Centerless => answer.retain(|n| n.index != center),
@@ -278,7 +295,9 @@ mod tests {
                     answer.pop();
                 }
                 Fault::Rounded => {
-                    answer.iter_mut().for_each(|n| n.distance = f64::from(n.distance as f32));
+                    answer
+                        .iter_mut()
+                        .for_each(|n| n.distance = f64::from(n.distance as f32));
                 }
                 _ => {}
             }
@@ -291,7 +310,9 @@ mod tests {
             if self.1 == Fault::LargerIndex {
                 self.0.nearest(center, usize::MAX, out);
                 out.sort_by(|a, b| {
-                    a.distance.total_cmp(&b.distance).then(b.index.cmp(&a.index))
+                    a.distance
+                        .total_cmp(&b.distance)
+                        .then(b.index.cmp(&a.index))
                 });
                 out.truncate(count);
                 sort(out);

@@ -46,7 +46,47 @@ static RELABELLING: Law = Law {
                ends in one component",
 };
 
-pub(super) static ALL: [&Law; 4] = [&MOTION, &SCALE, &EMBEDDING, &RELABELLING];
+/// Euler-Poincare.
+static EULER_POINCARE: Law = Law {
+    subject: "Betti numbers",
+    name: "Euler-Poincare",
+    says: "b0 - b1 + b2 equals vertices - edges + triangles, over every field",
+    look_for: "vertices without an edge, which are components of their own; edges without a triangle; \
+               ranks computed in floating point or modulo a prime and called rational",
+};
+
+pub(super) static ALL: [&Law; 5] = [&MOTION, &SCALE, &EMBEDDING, &RELABELLING, &EULER_POINCARE];
+
+/// Asks whether Betti numbers can be those of a complex.
+///
+/// # Errors
+/// The law 'Euler-Poincare' when they cannot.
+///
+/// ```
+/// use crosscap_core::{Complex, laws};
+/// let sides = vec![[0, 1, 2], [0, 1, 3], [0, 2, 3]]; // three sides of a tetrahedron
+/// let disc = Complex::new(4, sides, vec![]).unwrap();
+/// laws::euler_poincare(&disc, [1, 0, 0]).unwrap();
+/// laws::euler_poincare(&disc, [1, 0, 1]).unwrap_err();
+/// ```
+pub fn euler_poincare(complex: &Complex, betti: [usize; 3]) -> Result<(), LawBroken> {
+    let [b0, b1, b2] = betti.map(|b| b as i64);
+    let (alternating, euler) = (b0 - b1 + b2, complex.euler_characteristic());
+    if alternating == euler {
+        return Ok(());
+    }
+    Err(LawBroken {
+        law: &EULER_POINCARE,
+        input: format!(
+            "{} vertices, {} edges, {} triangles",
+            complex.vertices,
+            complex.edges().len(),
+            complex.triangles.len()
+        ),
+        found: format!("{b0} - {b1} + {b2} is {alternating}, the Euler characteristic is {euler}"),
+        seed: None,
+    })
+}
 
 /// Puts a whole reconstruction through the invariances that it inherits from its parts.
 ///
@@ -89,7 +129,10 @@ pub fn reconstruction<E: Debug>(
         }
         Err(match (&expected, &found) {
             (Ok(a), Ok(b)) => {
-                let new = b.triangles.iter().filter(|t| a.triangles.binary_search(t).is_err());
+                let new = b
+                    .triangles
+                    .iter()
+                    .filter(|t| a.triangles.binary_search(t).is_err());
                 format!(
                     "{} vertices and {} triangles became {} and {}; new are {:?} and more",
                     a.vertices,
@@ -106,7 +149,9 @@ pub fn reconstruction<E: Debug>(
         })
     };
     let n = points.dimension();
-    MOTION.holds(&settings, &motions(), |m| compare(&m.image(points, n, 1.0), 1.0))?;
+    MOTION.holds(&settings, &motions(), |m| {
+        compare(&m.image(points, n, 1.0), 1.0)
+    })?;
     SCALE.holds(&settings, &(-6..=6_i32), |exponent| {
         let factor = 10_f64.powi(*exponent);
         compare(&cloud(n, points.coordinates(), factor), factor)
@@ -151,7 +196,10 @@ pub fn relabelling<T: PartialEq + Debug>(
         let renamed = Complex::new(complex.vertices, triangles, edges.collect());
         let renamed = renamed.map_err(|e| format!("the complex is none: {e}"))?;
         let found = of(&renamed, &names);
-        ensure!(found == expected, "{expected:?} became {found:?} by the names {names:?}");
+        ensure!(
+            found == expected,
+            "{expected:?} became {found:?} by the names {names:?}"
+        );
         Ok(())
     })
 }
@@ -184,9 +232,8 @@ mod tests {
 
     #[test]
     fn every_fault_is_caught_by_its_law() {
-        let along_x = put(|points, a, b, factor| {
-            (points.point(a)[0] - points.point(b)[0]).abs() < factor
-        });
+        let along_x =
+            put(|points, a, b, factor| (points.point(a)[0] - points.point(b)[0]).abs() < factor);
         catches(along_x, &MOTION);
         catches(put(|points, a, b, _| distance(points, a, b) < 1.6), &SCALE);
         let by_space = put(|points, a, b, factor| {
@@ -195,6 +242,11 @@ mod tests {
         catches(by_space, &EMBEDDING);
         let disc = Complex::new(5, vec![[0, 1, 2], [0, 2, 3], [0, 3, 4]], vec![]).unwrap();
         let at_zero = |c: &Complex, _: &[u32]| c.triangles.iter().filter(|t| t[0] == 0).count();
-        catches(relabelling(&Settings::default(), &disc, at_zero), &RELABELLING);
+        catches(
+            relabelling(&Settings::default(), &disc, at_zero),
+            &RELABELLING,
+        );
+        euler_poincare(&disc, [1, 0, 0]).unwrap();
+        catches(euler_poincare(&disc, [1, 1, 0]), &EULER_POINCARE);
     }
 }

@@ -98,14 +98,20 @@ pub fn rule(settings: &Settings, rule: &impl TriangleRule) -> Result<(), LawBrok
         flat.rotate_left(turn);
         let [e, a, b] = flat;
         let rank = rule.rank(e, a, b);
-        ensure!(rank == f64::INFINITY, "rank({e}, {a}, {b}) of a triangle without area is {rank}");
+        ensure!(
+            rank == f64::INFINITY,
+            "rank({e}, {a}, {b}) of a triangle without area is {rank}"
+        );
         Ok(())
     })?;
     let thin = [-1.0..2.0_f64, 0.002..2.0_f64];
     DEGENERATE.holds(settings, &(edge(), thin), |(edge, place)| {
         let [e, a, b] = sides(*edge, place.map(|x| x * edge));
         let rank = rule.rank(e, a, b);
-        ensure!(rank < f64::INFINITY, "rank({e}, {a}, {b}) of a triangle with an area is {rank}");
+        ensure!(
+            rank < f64::INFINITY,
+            "rank({e}, {a}, {b}) of a triangle with an area is {rank}"
+        );
         Ok(())
     })
 }
@@ -133,7 +139,11 @@ mod tests {
 
     /// Perimeter, without flat triangles.
     fn perimeter(e: f64, a: f64, b: f64) -> f64 {
-        if area(e, a, b) > 1e-6 * e * e { e + a + b } else { f64::INFINITY }
+        if area(e, a, b) > 1e-6 * e * e {
+            e + a + b
+        } else {
+            f64::INFINITY
+        }
     }
 
     fn put(rank: fn(f64, f64, f64) -> f64) -> Result<(), LawBroken> {
@@ -152,7 +162,10 @@ mod tests {
 
     #[test]
     fn mixed_units_are_caught() {
-        catches(put(|e, a, b| perimeter(e, a, b) - 2.0 * area(e, a, b)), &SCALE);
+        catches(
+            put(|e, a, b| perimeter(e, a, b) - 2.0 * area(e, a, b)),
+            &SCALE,
+        );
     }
 
     #[test]

@@ -2,9 +2,7 @@
 
 use super::{Law, LawBroken};
 use proptest::strategy::Strategy;
-use proptest::test_runner::{
-    Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner,
-};
+use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 
 /// How thoroughly laws are tested. The same settings draw the same inputs.
 ///
@@ -95,7 +93,8 @@ impl Law {
 /// `Err` with the text unless the condition holds.
 macro_rules! ensure {
     ($condition:expr, $($text:tt)*) => {
-        if !$condition {
+        let holds: bool = $condition;
+        if !holds {
             return Err(format!($($text)*));
         }
     };

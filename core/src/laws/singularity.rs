@@ -125,7 +125,11 @@ type Answer = Result<Decomposition, Rejection>;
 
 /// Whether a decomposition is one, of so many points in so many coordinates.
 fn well_formed(d: &Decomposition, points: usize, dimension: usize) -> Outcome {
-    ensure!(d.labels.len() == points, "{} labels for {points} points", d.labels.len());
+    ensure!(
+        d.labels.len() == points,
+        "{} labels for {points} points",
+        d.labels.len()
+    );
     let strata = d.strata.len();
     let wild = d.labels.iter().position(|&l| l as usize >= strata);
     ensure!(
@@ -139,8 +143,14 @@ fn well_formed(d: &Decomposition, points: usize, dimension: usize) -> Outcome {
         "the strata have the dimensions {dimensions:?}"
     );
     let is_cell = |c: u8| dimensions.get(c as usize) == Some(&2);
-    let pair = d.continuations.iter().find(|c| !is_cell(c.0) || !is_cell(c.1) || c.0 == c.1);
-    ensure!(pair.is_none(), "the continuation {pair:?} is no pair of cells");
+    let pair = d
+        .continuations
+        .iter()
+        .find(|c| !is_cell(c.0) || !is_cell(c.1) || c.0 == c.1);
+    ensure!(
+        pair.is_none(),
+        "the continuation {pair:?} is no pair of cells"
+    );
     let curves = dimensions.iter().filter(|&&d| d == 1).count();
     ensure!(
         d.cells_at_curve.len() == curves,
@@ -157,7 +167,11 @@ fn well_formed(d: &Decomposition, points: usize, dimension: usize) -> Outcome {
         "the center is {:?}, in {dimension} coordinates",
         d.center
     );
-    ensure!(d.center_offset >= 0.0, "the center offset is {}", d.center_offset);
+    ensure!(
+        d.center_offset >= 0.0,
+        "the center offset is {}",
+        d.center_offset
+    );
     Ok(())
 }
 
@@ -198,7 +212,9 @@ fn same(
     let turned = |k: usize, x: f64| if signs.get(k) == Some(&true) { -x } else { x };
     let center = a.center.iter().enumerate().zip(&b.center);
     ensure!(
-        center.into_iter().all(|((k, &x), &y)| close(turned(k, x), y)),
+        center
+            .into_iter()
+            .all(|((k, &x), &y)| close(turned(k, x), y)),
         "the center {:?} became {:?}, axes turned round: {signs:?}",
         a.center,
         b.center
@@ -231,10 +247,19 @@ fn same(
         .filter_map(|&(x, y)| Some(sorted((names[x as usize]?, names[y as usize]?))))
         .collect();
     let known = |c: &&(u8, u8)| back[c.0 as usize].is_some() && back[c.1 as usize].is_some();
-    let mut after: Vec<(u8, u8)> = b.continuations.iter().filter(known).copied().map(sorted).collect();
+    let mut after: Vec<(u8, u8)> = b
+        .continuations
+        .iter()
+        .filter(known)
+        .copied()
+        .map(sorted)
+        .collect();
     before.sort_unstable();
     after.sort_unstable();
-    ensure!(before == after, "continuations {before:?} (in the later names) became {after:?}");
+    ensure!(
+        before == after,
+        "continuations {before:?} (in the later names) became {after:?}"
+    );
     let first_curve = |d: &Decomposition| d.strata.iter().filter(|s| s.dimension == 0).count();
     let (skip_a, skip_b) = (first_curve(a), first_curve(b));
     for (k, &cells) in a.cells_at_curve.iter().enumerate() {
@@ -287,15 +312,20 @@ pub fn model(
     let cases = |noise: f64| {
         let noise = prop_oneof![Just(0.0), 0.0..noise.max(f64::MIN_POSITIVE)];
         let signs = vec(any::<bool>(), dimension);
-        (any::<u64>(), instances.points.clone(), noise, motions(), signs).prop_map(
-            |(seed, points, noise, motion, signs)| Case {
+        (
+            any::<u64>(),
+            instances.points.clone(),
+            noise,
+            motions(),
+            signs,
+        )
+            .prop_map(|(seed, points, noise, motion, signs)| Case {
                 seed,
                 points,
                 noise,
                 motion,
                 signs,
-            },
-        )
+            })
     };
     let draw = |case: &Case| {
         let instance = (instances.draw)(&mut Draw::new(case.seed, case.points));
@@ -315,11 +345,19 @@ pub fn model(
     };
     let noisy = cases(4.0 * instances.noise);
 
-    let poor = (vec(prop::array::uniform12(-2..=2_i8), 1..=30), any::<bool>(), 1..=30_usize);
+    let poor = (
+        vec(prop::array::uniform12(-2..=2_i8), 1..=30),
+        any::<bool>(),
+        1..=30_usize,
+    );
     PARTITION.holds(settings, &poor, |(rows, far, fitted)| {
         let rows: Vec<_> = rows
             .iter()
-            .map(|row| (0..dimension).map(|k| f64::from(row[k % 12]) / 3.0).collect::<Vec<f64>>())
+            .map(|row| {
+                (0..dimension)
+                    .map(|k| f64::from(row[k % 12]) / 3.0)
+                    .collect::<Vec<f64>>()
+            })
             .collect();
         let mut instance = Instance {
             dimension,
@@ -334,7 +372,9 @@ pub fn model(
         }
         ask(&instance.principal()).map(|_| ())
     })?;
-    PARTITION.holds(settings, &noisy, |case| ask(&draw(case)?.principal()).map(|_| ()))?;
+    PARTITION.holds(settings, &noisy, |case| {
+        ask(&draw(case)?.principal()).map(|_| ())
+    })?;
     MOTION.holds(settings, &noisy, |case| {
         let raw = draw(case)?;
         let first = raw.principal();
@@ -363,7 +403,11 @@ pub fn model(
         let unturned = (0..raw.len()).all(|k| {
             let (p, q) = (first.local(), moved.local());
             (0..dimension).all(|a| {
-                let x = if signs[a] { -p.point(k)[a] } else { p.point(k)[a] };
+                let x = if signs[a] {
+                    -p.point(k)[a]
+                } else {
+                    p.point(k)[a]
+                };
                 (x - q.point(k)[a]).abs() < 1e-9 * raw.radius
             })
         });
@@ -373,12 +417,16 @@ pub fn model(
         Ok(())
     })?;
     let keys = vec(any::<u16>(), 512);
-    ORDER.holds(settings, &(cases(4.0 * instances.noise), keys), |(case, keys)| {
-        let first = draw(case)?.principal();
-        let (other, order) = first.reordered(keys);
-        let pairs = order.iter().enumerate().map(|(new, &old)| (old, new));
-        same(&ask(&first)?, &ask(&other)?, pairs, &[], first.radius)
-    })?;
+    ORDER.holds(
+        settings,
+        &(cases(4.0 * instances.noise), keys),
+        |(case, keys)| {
+            let first = draw(case)?.principal();
+            let (other, order) = first.reordered(keys);
+            let pairs = order.iter().enumerate().map(|(new, &old)| (old, new));
+            same(&ask(&first)?, &ask(&other)?, pairs, &[], first.radius)
+        },
+    )?;
     FITTED.holds(settings, &noisy, |case| {
         let all = draw(case)?.principal();
         let mut alone = all.clone();
@@ -390,16 +438,27 @@ pub fn model(
     let exact = cases(0.0);
     let accepted = |instance: &Instance| ask(instance)?.map_err(|r| format!("rejected with {r:?}"));
     EXACT.holds(settings, &exact, |case| {
-        let instance = draw(&Case { noise: 0.0, ..case.clone() })?.principal();
+        let instance = draw(&Case {
+            noise: 0.0,
+            ..case.clone()
+        })?
+        .principal();
         let residual = accepted(&instance)?.residual;
         let limit = instances.exact * instance.radius;
-        ensure!(residual <= limit, "the residual is {residual}, above {limit}");
+        ensure!(
+            residual <= limit,
+            "the residual is {residual}, above {limit}"
+        );
         Ok(())
     })?;
     NOISE.holds(settings, &exact, |case| {
         let mut before = 0.0;
         for noise in [1.0, 2.0, 4.0].map(|k| k * instances.noise) {
-            let instance = draw(&Case { noise, ..case.clone() })?.principal();
+            let instance = draw(&Case {
+                noise,
+                ..case.clone()
+            })?
+            .principal();
             let Ok(d) = ask(&instance)? else {
                 return Ok(());
             };
@@ -482,9 +541,17 @@ mod tests {
                     needed: 4,
                 });
             }
-            let counted = if self.0 == Fault::AllRowsFitted { local.len() } else { fitted };
+            let counted = if self.0 == Fault::AllRowsFitted {
+                local.len()
+            } else {
+                fitted
+            };
             let heights: f64 = (0..counted).map(|k| local.point(k)[2].powi(2)).sum();
-            let free = if self.0 == Fault::Unchecked { counted as f64 - 3.0 } else { counted as f64 };
+            let free = if self.0 == Fault::Unchecked {
+                counted as f64 - 3.0
+            } else {
+                counted as f64
+            };
             let mut residual = (heights / free).sqrt();
             let mut labels = vec![1; local.len()];
             let mut strata = vec![Stratum { dimension: 1 }, Stratum { dimension: 2 }];
@@ -532,7 +599,13 @@ mod tests {
 
     #[test]
     fn every_fault_is_caught_by_its_law() {
-        let put = |fault| model(&Settings::default(), &Twin(fault), &Instances::new(&flat_sheet));
+        let put = |fault| {
+            model(
+                &Settings::default(),
+                &Twin(fault),
+                &Instances::new(&flat_sheet),
+            )
+        };
         put(Fault::None).unwrap();
         for (fault, law) in [
             (Fault::WildLabel, &PARTITION),
