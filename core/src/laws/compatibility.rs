@@ -269,14 +269,15 @@ mod tests {
                     parted(a, b)
                 }
             };
-            let both = shares == 1;
+            let clear = match (shares, self.0) {
+                (1, _) => apart(a, b) && apart(b, a),
+                (_, Fault::OneWay) => apart(a, b),
+                _ => apart(a, b) || apart(b, a),
+            };
+            let misplaced = self.0 == Fault::Quadrant && a.places.iter().any(|p| p[0] < 0.0);
             if shares == 3 {
                 Meeting::CommonFace
-            } else if self.0 == Fault::Quadrant && a.places.iter().any(|p| p[0] < 0.0) {
-                Meeting::Overlap
-            } else if both && !(apart(a, b) && apart(b, a)) {
-                Meeting::Overlap
-            } else if !(apart(a, b) || self.0 != Fault::OneWay && apart(b, a)) {
+            } else if misplaced || !clear {
                 Meeting::Overlap
             } else if shares > 0 {
                 Meeting::CommonFace

@@ -20,14 +20,16 @@ fn every_law_is_listed_and_has_a_twin() {
     let mut stated = 0;
     for source in SOURCES {
         let (laws, tests) = source.split_once("mod tests {").unwrap();
+        let tests: String = tests.split_whitespace().collect();
         for line in laws.lines() {
             let name = line
                 .strip_prefix("static ")
                 .and_then(|l| l.strip_suffix(": Law = Law {"));
             if let Some(name) = name {
                 stated += 1;
+                let named = [")", ",)"].map(|end| format!("&{name}{end}"));
                 assert!(
-                    tests.contains(&format!("&{name})")),
+                    named.iter().any(|n| tests.contains(n)),
                     "no twin breaks {name}"
                 );
             }
