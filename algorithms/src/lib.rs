@@ -8,6 +8,8 @@ pub mod execute;
 pub mod homology;
 pub mod isomap;
 pub mod landmarks;
+#[cfg(any(test, feature = "laws"))]
+pub mod laws;
 pub mod metric;
 pub mod pieces;
 pub mod predicate;

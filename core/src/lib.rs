@@ -24,6 +24,8 @@ mod complex;
 mod dimension;
 mod error;
 mod landmarks;
+#[cfg(any(test, feature = "laws"))]
+pub mod laws;
 mod metric;
 mod neighborhood;
 mod scalar;

@@ -1,0 +1,146 @@
+//! Laws of finished meshes, for the surfaces of users.
+//!
+//! The laws of traits are in [`crosscap_core::laws`], as are those that need a complex alone; here is
+//! what takes homology and links.
+
+use crate::certificate::{CertificateOptions, SpecialPoint, certify};
+use crate::homology::homology;
+use crosscap_core::Mesh;
+use crosscap_core::laws::{self, Law, LawBroken, Settings};
+
+static LINKS: Law = Law {
+    subject: "a mesh",
+    name: "links",
+    says: "every vertex looks like a point of a surface that may cross itself: its link is of an \
+           admissible kind, or declared",
+    look_for: "two sheets that hang together in one vertex; a curve whose edges are not all marked; a \
+               special point (pinch, isolated crossing) that is not declared",
+};
+
+static UNUSABLE: Law = Law {
+    subject: "a mesh",
+    name: "indices",
+    says: "corners are vertices, triangles are different, and no two vertices are at one place",
+    look_for: "arrays that were put together by hand: `Complex::new` and `Mesh::new` check them",
+};
+
+/// Puts a mesh through the laws that every result obeys: usable indices, Euler-Poincare over Q, Z/2
+/// and Z/3, admissible links (`special` declares the others), and homology that does not depend on
+/// the names of the vertices (16 other namings at most).
+///
+/// Holes, folds and distances to the points are for [`certify`].
+///
+/// # Errors
+/// The first law that does not hold.
+///
+/// ```
+/// use crosscap_algorithms::laws;
+/// use crosscap_core::laws::Settings;
+/// use crosscap_core::{Complex, Mesh, PointCloud};
+/// let faces = vec![[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
+/// let corners = vec![1., 1., 1., 1., -1., -1., -1., 1., -1., -1., -1., 1.];
+/// let complex = Complex::new(4, faces, vec![]).unwrap();
+/// let mesh = Mesh::new(complex, PointCloud::new(3, corners).unwrap(), vec![-1; 4]).unwrap();
+/// laws::surface(&Settings::default(), &mesh, &[]).unwrap();
+/// ```
+pub fn surface(
+    settings: &Settings,
+    mesh: &Mesh,
+    special: &[SpecialPoint],
+) -> Result<(), LawBroken> {
+    let complex = &mesh.complex;
+    let broken = |law: &'static Law, found: String| LawBroken {
+        law,
+        input: format!(
+            "{} vertices, {} triangles, {} curve edges",
+            complex.vertices,
+            complex.triangles.len(),
+            complex.curve_edges.len()
+        ),
+        found,
+        seed: None,
+    };
+    let options = CertificateOptions {
+        special_points: special,
+        ..CertificateOptions::default()
+    };
+    let certificate = certify(mesh, &options);
+    let Some(links) = certificate.links else {
+        let first = certificate.indices.violations.first();
+        return Err(broken(
+            &UNUSABLE,
+            first.map(ToString::to_string).unwrap_or_default(),
+        ));
+    };
+    let groups = homology(complex).map_err(|e| broken(&UNUSABLE, e.to_string()))?;
+    laws::euler_poincare(complex, groups.betti_rational)?;
+    for p in [2, 3] {
+        if let Ok(betti) = groups.betti_mod(p) {
+            laws::euler_poincare(complex, betti)?;
+        }
+    }
+    if let Some(first) = links.violations.first() {
+        return Err(broken(&LINKS, first.to_string()));
+    }
+    let settings = Settings {
+        cases: settings.cases.min(16),
+        shrink_steps: settings.shrink_steps.min(64),
+        ..settings.clone()
+    };
+    laws::relabelling(&settings, complex, |renamed, _| homology(renamed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::LinkKind;
+    use crosscap_core::{Complex, PointCloud};
+
+    /// Two tetrahedra, with a vertex in common or without; `twice` puts two vertices at one place.
+    fn tetrahedra(joined: bool, twice: bool) -> Mesh {
+        let faces = |a: u32, b: u32| {
+            [
+                [a, b, b + 1],
+                [a, b, b + 2],
+                [a, b + 1, b + 2],
+                [b, b + 1, b + 2],
+            ]
+        };
+        let mut triangles = faces(0, 1).to_vec();
+        triangles.extend(faces(if joined { 0 } else { 7 }, 4));
+        let mut places = vec![0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1.];
+        places.extend([-1., 0., 0., 0., -1., 0., 0., 0., -1.]);
+        if !joined {
+            places.extend([-0.1, -0.1, -0.1]);
+        }
+        if twice {
+            places.copy_within(3..6, 6);
+        }
+        let count = places.len() / 3;
+        let complex = Complex::new(count, triangles, vec![]).unwrap();
+        Mesh::new(
+            complex,
+            PointCloud::new(3, places).unwrap(),
+            vec![-1; count],
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn what_is_wrong_is_caught_by_its_law() {
+        let put =
+            |mesh: &Mesh, special: &[SpecialPoint]| surface(&Settings::default(), mesh, special);
+        put(&tetrahedra(false, false), &[]).unwrap();
+        let joined = tetrahedra(true, false);
+        let broken = put(&joined, &[]).unwrap_err();
+        assert_eq!(broken.law.name, "links", "{broken}");
+        assert!(broken.found.contains('0'), "{broken}");
+        let declared = SpecialPoint {
+            vertex: 0,
+            link: LinkKind::IsolatedCrossing,
+        };
+        put(&joined, &[declared]).unwrap();
+        let broken = put(&tetrahedra(false, true), &[]).unwrap_err();
+        assert_eq!(broken.law.name, "indices", "{broken}");
+    }
+}

@@ -1,0 +1,340 @@
+//! Laws of [`DimensionEstimator`].
+
+use super::inputs::{FlatSample, flat_samples, ranks};
+use super::motion::{Motion, motions};
+use super::reference::{StraightLine, rounding, sort};
+use super::settings::{Outcome, ensure};
+use super::{Law, LawBroken, Settings};
+use crate::{
+    DimensionEstimate, DimensionEstimator, Error, MetricSpace, Neighbor, Neighborhood, PointCloud,
+    Scalar,
+};
+use proptest::prelude::*;
+
+const SUBJECT: &str = "DimensionEstimator";
+
+/// An answer that can be used.
+static ANSWER: Law = Law {
+    subject: SUBJECT,
+    name: "answer",
+    says: "the value is finite and at least 0, the confidence between 0 and 1, the same question gets \
+           the same answer; few points or copies of one point are refused or answered, without a panic",
+    look_for: "the logarithm of a distance 0 (copies of the center); a division by the number of \
+               neighbors minus one; a spectrum whose sum is 0; random numbers without a fixed seed",
+};
+
+/// Motion.
+static MOTION: Law = Law {
+    subject: SUBJECT,
+    name: "motion",
+    says: "the same answer after a rigid motion, within rounding",
+    look_for: "coordinates that are not centered; a fixed axis or grid (boxes that are counted); \
+               random directions",
+};
+
+/// Scale.
+static SCALE: Law = Law {
+    subject: SUBJECT,
+    name: "scale",
+    says: "the same answer after uniform scaling of data and radius",
+    look_for: "a threshold in the unit of the data: make it a share of the radius or of the total; a \
+               constant that guards a division",
+};
+
+/// Embedding.
+static EMBEDDING: Law = Law {
+    subject: SUBJECT,
+    name: "embedding",
+    says: "the same answer after an isometric embedding in a larger space",
+    look_for: "the dimension of the space in a formula (a mean over coordinates, a share of N)",
+};
+
+/// Order.
+static ORDER: Law = Law {
+    subject: SUBJECT,
+    name: "order",
+    says: "the same answer for any order of the points, within rounding",
+    look_for: "a subset picked by index (the first half, every second one): pick by distance, or all",
+};
+
+pub(super) static ALL: [&Law; 5] = [&ANSWER, &MOTION, &SCALE, &EMBEDDING, &ORDER];
+
+/// The neighborhood of the first point that holds all.
+struct Ball<S> {
+    metric: StraightLine<S>,
+    center: usize,
+    radius: f64,
+    neighbors: Vec<Neighbor<S>>,
+}
+
+impl<S: Scalar> Ball<S> {
+    fn new(cloud: &PointCloud<f64>, center: usize) -> Self {
+        let metric = StraightLine(cloud.cast::<S>());
+        let mut neighbors: Vec<Neighbor<S>> = (0..metric.len())
+            .map(|index| Neighbor {
+                index,
+                distance: metric.distance(center, index),
+            })
+            .collect();
+        sort(&mut neighbors);
+        let farthest = neighbors.last().map_or(0.0, |n| n.distance.as_f64());
+        Self {
+            metric,
+            center,
+            // Strict, and in proportion to the data.
+            radius: farthest * 1.001,
+            neighbors,
+        }
+    }
+
+    fn estimate(
+        &self,
+        estimator: &impl DimensionEstimator<Scalar = S>,
+    ) -> Result<DimensionEstimate, Error> {
+        estimator.estimate(&Neighborhood {
+            center: self.center,
+            radius: self.radius,
+            neighbors: &self.neighbors,
+            metric: &self.metric,
+            cloud: Some(&self.metric.0),
+        })
+    }
+}
+
+/// Whether two estimates are the same within rounding.
+fn same<S: Scalar>(
+    before: &Result<DimensionEstimate, Error>,
+    after: &Result<DimensionEstimate, Error>,
+) -> Outcome {
+    let tolerance = 32.0 * rounding::<S>().sqrt();
+    match (before, after) {
+        (Ok(a), Ok(b)) => {
+            // A toss-up may fall either way.
+            let toss_up = a.confidence.min(b.confidence) < tolerance;
+            let close = |x: f64, y: f64| (x - y).abs() <= tolerance * (1.0 + x.abs());
+            let alike = a.dimension == b.dimension && close(a.value, b.value);
+            ensure!(
+                toss_up || alike && close(a.confidence, b.confidence),
+                "dimension {}, value {}, confidence {} became {}, {}, {}",
+                a.dimension,
+                a.value,
+                a.confidence,
+                b.dimension,
+                b.value,
+                b.confidence
+            );
+        }
+        (Err(a), Err(b)) => {
+            let kind = std::mem::discriminant;
+            ensure!(kind(a) == kind(b), "'{a}' became '{b}'");
+        }
+        (Ok(a), Err(b)) => return Err(format!("dimension {} became '{b}'", a.dimension)),
+        (Err(a), Ok(b)) => return Err(format!("'{a}' became dimension {}", b.dimension)),
+    }
+    Ok(())
+}
+
+/// Puts an estimator through its laws, on neighborhoods of 12 to 60 points of flat pieces of
+/// dimension 1 to 4 with and without thickness, and on poor ones.
+///
+/// What it finds on which data is not judged here: that is for tests of its own.
+///
+/// # Errors
+/// The first law that does not hold.
+///
+/// ```
+/// use crosscap_core::laws::{self, Settings};
+/// use crosscap_core::{DimensionEstimate, DimensionEstimator, Error, Neighborhood};
+/// /// Counts doublings: twice the radius, 2^d times the points.
+/// struct Doubling;
+/// impl DimensionEstimator for Doubling {
+///     type Scalar = f64;
+///     fn estimate(&self, around: &Neighborhood<'_, f64>) -> Result<DimensionEstimate, Error> {
+///         let all = around.neighbors.len() as f64;
+///         let inner = around.neighbors.iter().filter(|n| 2.0 * n.distance < around.radius).count();
+///         let value = (all / inner.max(1) as f64).log2();
+///         Ok(DimensionEstimate { dimension: value.round() as usize, value, ..Default::default() })
+///     }
+///     fn name(&self) -> &str { "doubling" }
+/// }
+/// laws::estimator(&Settings::default(), &Doubling).unwrap();
+/// ```
+pub fn estimator<D: DimensionEstimator>(
+    settings: &Settings,
+    estimator: &D,
+) -> Result<(), LawBroken> {
+    let usable = |estimate: &DimensionEstimate| -> Outcome {
+        ensure!(
+            estimate.value >= 0.0 && estimate.value.is_finite(),
+            "the value is {}",
+            estimate.value
+        );
+        ensure!(
+            (0.0..=1.0).contains(&estimate.confidence),
+            "the confidence is {}",
+            estimate.confidence
+        );
+        Ok(())
+    };
+    let all_kinds = prop_oneof![
+        super::inputs::clouds(1..=4, 1..=8),
+        flat_samples().prop_map(|s| s.cloud)
+    ];
+    ANSWER.holds(settings, &all_kinds, |cloud| {
+        let ball = Ball::new(cloud, 0);
+        let first = ball.estimate(estimator);
+        first.as_ref().map_or(Ok(()), usable)?;
+        let again = ball.estimate(estimator);
+        ensure!(first == again, "asked twice: {first:?}, then {again:?}");
+        Ok(())
+    })?;
+    let ask = |cloud: &PointCloud<f64>, center| Ball::new(cloud, center).estimate(estimator);
+    let moved =
+        |law: &'static Law, dimensions: usize, change: fn(&Motion, f64) -> (Motion, f64)| {
+            let inputs = (flat_samples(), motions(), -6..=6_i32, 0..=dimensions);
+            law.holds(settings, &inputs, |(sample, motion, exponent, more)| {
+                let FlatSample { cloud, .. } = sample;
+                let (motion, factor) = change(motion, 10_f64.powi(*exponent));
+                let dimension = cloud.dimension() + more;
+                let image = motion.image(cloud, dimension, factor);
+                same::<D::Scalar>(&ask(cloud, 0), &ask(&image, 0))
+            })
+        };
+    let still = |_: &Motion, factor: f64| {
+        let none = Motion {
+            angles: vec![],
+            reflected: false,
+            shift: vec![],
+        };
+        (none, factor)
+    };
+    moved(&MOTION, 0, |motion, _| (motion.clone(), 1.0))?;
+    moved(&SCALE, 0, still)?;
+    moved(&EMBEDDING, 6, |motion, _| (motion.clone(), 1.0))?;
+    let keys = prop::collection::vec(any::<u16>(), 60);
+    ORDER.holds(settings, &(flat_samples(), keys), |(sample, keys)| {
+        let cloud = &sample.cloud;
+        let order = ranks(&keys[..cloud.len()]);
+        let center = order.iter().position(|&k| k == 0).unwrap_or(0);
+        same::<D::Scalar>(&ask(cloud, 0), &ask(&cloud.select(&order), center))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::twins::catches;
+    use super::*;
+
+    /// Reads the dimension off a number made from the neighborhood.
+    struct Read(fn(&Neighborhood<'_, f64>) -> f64);
+
+    impl DimensionEstimator for Read {
+        type Scalar = f64;
+        fn estimate(&self, around: &Neighborhood<'_, f64>) -> Result<DimensionEstimate, Error> {
+            let value = (self.0)(around);
+            Ok(DimensionEstimate {
+                dimension: value.round() as usize,
+                value,
+                confidence: 1.0,
+                spectrum: vec![],
+            })
+        }
+        fn name(&self) -> &str {
+            "read"
+        }
+    }
+
+    /// Mean distance of the neighbors as a share of the radius, or what else of one.
+    fn mean(around: &Neighborhood<'_, f64>, of: impl Fn(&Neighbor<f64>) -> f64) -> f64 {
+        let total: f64 = around.neighbors.iter().map(of).sum();
+        total / around.neighbors.len() as f64
+    }
+
+    fn put(read: fn(&Neighborhood<'_, f64>) -> f64) -> Result<(), LawBroken> {
+        estimator(&Settings::default(), &Read(read))
+    }
+
+    fn share(around: &Neighborhood<'_, f64>) -> f64 {
+        if around.radius > 0.0 {
+            8.0 * mean(around, |n| n.distance) / around.radius
+        } else {
+            0.0
+        }
+    }
+
+    #[test]
+    fn an_invariant_estimator_passes() {
+        put(share).unwrap();
+        struct Coarse;
+        impl DimensionEstimator for Coarse {
+            type Scalar = f32;
+            fn estimate(&self, around: &Neighborhood<'_, f32>) -> Result<DimensionEstimate, Error> {
+                let near = |n: &&Neighbor<f32>| n.distance.as_f64() > 0.5 * around.radius;
+                let value = around.neighbors.iter().filter(near).count() as f64;
+                // Counting is a toss-up whenever a point is at the limit.
+                let margin = |n: &Neighbor<f32>| (n.distance.as_f64() / around.radius - 0.5).abs();
+                let confidence = around.neighbors.iter().map(margin).fold(1.0, f64::min);
+                Ok(DimensionEstimate {
+                    dimension: value as usize,
+                    value,
+                    confidence,
+                    spectrum: vec![],
+                })
+            }
+            fn name(&self) -> &str {
+                "coarse"
+            }
+        }
+        estimator(&Settings::default(), &Coarse).unwrap();
+    }
+
+    #[test]
+    fn nonsense_is_caught() {
+        // The logarithm of the distance of a copy.
+        catches(
+            put(|around| mean(around, |n| n.distance.ln().abs())),
+            &ANSWER,
+        );
+    }
+
+    #[test]
+    fn a_fixed_axis_is_caught() {
+        let along_x = |around: &Neighborhood<'_, f64>| {
+            let cloud = around.cloud.unwrap();
+            let x = |i: usize| cloud.point(i)[0];
+            let spread = mean(around, |n| (x(n.index) - x(around.center)).abs());
+            share(around)
+                + if around.radius > 0.0 {
+                    spread / around.radius
+                } else {
+                    0.0
+                }
+        };
+        catches(put(along_x), &MOTION);
+    }
+
+    #[test]
+    fn a_fixed_length_is_caught() {
+        catches(
+            put(|around| share(around) + mean(around, |n| n.distance).min(1.0)),
+            &SCALE,
+        );
+    }
+
+    #[test]
+    fn the_dimension_of_the_space_is_caught() {
+        let broken = put(|around| share(around) + around.cloud.unwrap().dimension() as f64);
+        catches(broken, &EMBEDDING);
+    }
+
+    #[test]
+    fn a_subset_by_index_is_caught() {
+        let half = |around: &Neighborhood<'_, f64>| {
+            let count = around.neighbors.len();
+            let r = around.radius.max(f64::MIN_POSITIVE);
+            let early = |n: &Neighbor<f64>| f64::from(u8::from(n.index < count / 2));
+            mean(around, |n| early(n) * n.distance / r)
+        };
+        catches(put(half), &ORDER);
+    }
+}

@@ -1,0 +1,183 @@
+//! Laws of [`MetricSpace`].
+
+use super::inputs::clouds;
+use super::reference::rounding;
+use super::settings::ensure;
+use super::{Law, LawBroken, Settings};
+use crate::{MetricSpace, PointCloud, Scalar};
+
+const SUBJECT: &str = "MetricSpace";
+
+/// Never NaN.
+static NEVER_NAN: Law = Law {
+    subject: SUBJECT,
+    name: "never NaN",
+    says: "every distance is a number; infinity says that no path joins the two points",
+    look_for: "0/0 or the arc cosine of something above 1 where points coincide; the square root of \
+               a difference that rounding made negative",
+};
+
+/// Identity.
+static IDENTITY: Law = Law {
+    subject: SUBJECT,
+    name: "identity",
+    says: "distance(a, a) == 0, exactly, and distances are at least 0",
+    look_for: "an offset or a smoothing term inside a root; a cosine similarity instead of a \
+               distance; a difference without its absolute value. Return 0 early when a == b",
+};
+
+/// Symmetry.
+static SYMMETRY: Law = Law {
+    subject: SUBJECT,
+    name: "symmetry",
+    says: "distance(a, b) == distance(b, a), to the bit",
+    look_for: "a directed graph; sums that run in the order of the path (add in integers, or from \
+               the smaller index); something that belongs to `a` alone, as its own bandwidth",
+};
+
+/// Triangle inequality.
+static TRIANGLE: Law = Law {
+    subject: SUBJECT,
+    name: "triangle inequality",
+    says: "distance(a, c) <= distance(a, b) + distance(b, c), within rounding",
+    look_for: "squared distances whose root is missing; a power above 1; a minimum over several \
+               metrics (the maximum and the sum of metrics are metrics); a similarity that was only \
+               subtracted from 1",
+};
+
+pub(super) static ALL: [&Law; 4] = [&NEVER_NAN, &IDENTITY, &SYMMETRY, &TRIANGLE];
+
+/// Puts a metric through its laws, on all triples of clouds of 1 to 9 points in R^1 to R^5 with copies
+/// and ties.
+///
+/// `build` makes the metric over the points that it is given (`cloud.cast()` for `f32`); it may
+/// leave points out.
+///
+/// # Errors
+/// The first law that does not hold.
+///
+/// ```
+/// use crosscap_core::laws::{self, Settings, StraightLine};
+/// laws::metric(&Settings::default(), |cloud| StraightLine(cloud.clone())).unwrap();
+/// ```
+pub fn metric<M: MetricSpace>(
+    settings: &Settings,
+    build: impl Fn(&PointCloud<f64>) -> M,
+) -> Result<(), LawBroken> {
+    let clouds = clouds(1..=5, 1..=9);
+    // What the test says of a pair and its distances, both ways.
+    let on_pairs = |law: &'static Law, test: fn(usize, usize, f64, f64) -> bool| {
+        law.holds(settings, &clouds, |cloud| {
+            let metric = build(cloud);
+            let d = |a, b| metric.distance(a, b).as_f64();
+            for a in 0..metric.len() {
+                for b in 0..metric.len() {
+                    let (there, back) = (d(a, b), d(b, a));
+                    ensure!(
+                        test(a, b, there, back),
+                        "distance({a}, {b}) = {there}, distance({b}, {a}) = {back}"
+                    );
+                }
+            }
+            Ok(())
+        })
+    };
+    on_pairs(&NEVER_NAN, |_, _, d, _| !d.is_nan())?;
+    on_pairs(&IDENTITY, |a, b, d, _| d >= 0.0 && (a != b || d == 0.0))?;
+    on_pairs(&SYMMETRY, |_, _, d, back| d.to_bits() == back.to_bits())?;
+    TRIANGLE.holds(settings, &clouds, |cloud| {
+        let metric = build(cloud);
+        let n = metric.len();
+        let all: Vec<f64> = (0..n * n)
+            .map(|k| metric.distance(k / n, k % n).as_f64())
+            .collect();
+        let d = |a: usize, b: usize| all[a * n + b];
+        // A few roundings a coordinate in each of the three.
+        let slack = 64.0 * rounding::<M::Scalar>();
+        for a in 0..n {
+            for b in 0..n {
+                for c in a + 1..n {
+                    let round = d(a, b) + d(b, c);
+                    ensure!(
+                        d(a, c) <= round * (1.0 + slack),
+                        "distance({a}, {c}) = {}, yet through {b} it is {} + {} = {round}",
+                        d(a, c),
+                        d(a, b),
+                        d(b, c)
+                    );
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::twins::catches;
+    use super::super::{Settings, StraightLine};
+    use super::*;
+
+    /// Straight-line distances, spoiled.
+    struct Spoiled(StraightLine<f64>, fn(usize, usize, f64) -> f64);
+
+    impl MetricSpace for Spoiled {
+        type Scalar = f64;
+        fn len(&self) -> usize {
+            self.0.len()
+        }
+        fn distance(&self, a: usize, b: usize) -> f64 {
+            self.1(a, b, self.0.distance(a, b))
+        }
+        fn name(&self) -> &str {
+            "spoiled"
+        }
+    }
+
+    fn put(spoil: fn(usize, usize, f64) -> f64) -> Result<(), LawBroken> {
+        metric(&Settings::default(), |cloud| {
+            Spoiled(StraightLine(cloud.clone()), spoil)
+        })
+    }
+
+    #[test]
+    fn sound_metrics_pass() {
+        put(|_, _, d| d).unwrap();
+        put(|_, _, d| if d < 2.0 { d } else { f64::INFINITY }).unwrap_err();
+        put(|a, b, _| if a == b { 0.0 } else { f64::INFINITY }).unwrap();
+        metric(&Settings::default(), |cloud| {
+            StraightLine(cloud.cast::<f32>())
+        })
+        .unwrap();
+    }
+
+    #[test]
+    fn a_nan_is_caught() {
+        let broken = put(|a, b, d| if a != b && d == 0.0 { f64::NAN } else { d });
+        catches(broken, &NEVER_NAN);
+    }
+
+    #[test]
+    fn an_offset_is_caught() {
+        catches(put(|_, _, d| (d * d + 1e-18).sqrt()), &IDENTITY);
+    }
+
+    #[test]
+    fn a_negative_distance_is_caught() {
+        catches(put(|_, _, d| if d > 1.0 { 1.0 - d } else { d }), &IDENTITY);
+    }
+
+    #[test]
+    fn a_last_bit_of_asymmetry_is_caught() {
+        catches(
+            put(|a, b, d| if a < b { d.next_up() } else { d }),
+            &SYMMETRY,
+        );
+    }
+
+    #[test]
+    fn squares_are_caught() {
+        let broken = catches(put(|_, _, d| d * d), &TRIANGLE);
+        assert!(broken.found.contains("yet through"), "{broken}");
+    }
+}

@@ -1,0 +1,363 @@
+//! Laws of [`NeighborhoodOracle`].
+
+use super::inputs::clouds;
+use super::reference::Scan;
+use super::settings::ensure;
+use super::{Law, LawBroken, Settings};
+use crate::{MetricSpace, Neighbor, NeighborhoodOracle, PointCloud, Scalar};
+use proptest::prelude::*;
+
+const SUBJECT: &str = "NeighborhoodOracle";
+
+/// The buffer.
+static BUFFER: Law = Law {
+    subject: SUBJECT,
+    name: "buffer",
+    says: "the former content of the buffer is dropped",
+    look_for: "a missing `out.clear()`, also on the way out for an empty answer",
+};
+
+/// Strictness.
+static STRICTNESS: Law = Law {
+    subject: SUBJECT,
+    name: "strictness",
+    says: "within takes points at distance < radius, the center among them when radius > 0",
+    look_for: "<= instead of <: search trees are inclusive by default; a center that is left out",
+};
+
+/// Order.
+static ORDER: Law = Law {
+    subject: SUBJECT,
+    name: "order",
+    says: "answers come sorted by distance, ties by index",
+    look_for: "the order in which a tree is walked; a sort by distance alone, stable or not",
+};
+
+/// Ties.
+static TIES: Law = Law {
+    subject: SUBJECT,
+    name: "ties",
+    says: "where several points are equally far in the last place, nearest takes the smaller indices",
+    look_for: "a heap of fixed size that keeps who came first: ask for all that are as far as the \
+               last one, sort, then cut; the center put first by force where a copy of it has a \
+               smaller index",
+};
+
+/// Equals brute force.
+static BRUTE_FORCE: Law = Law {
+    subject: SUBJECT,
+    name: "equals brute force",
+    says: "the answer is that of a scan over all points with the metric that the oracle serves, with \
+           the distances of that metric to the bit",
+    look_for: "a tree in another precision, or that compares squares rounded differently (query a \
+               little wider, measure again); a search that stops too early; copies of a point; an \
+               oracle of another metric than the one it was compared with",
+};
+
+/// Places.
+static PLACES: Law = Law {
+    subject: SUBJECT,
+    name: "places",
+    says: "where within_of answers (returns true), a point's own coordinates give what within gives",
+    look_for: "within_of with another strictness, order or metric than within; coordinates that were \
+               scaled or centered for the tree and not for the query",
+};
+
+pub(super) static ALL: [&Law; 6] = [&BUFFER, &STRICTNESS, &ORDER, &TIES, &BRUTE_FORCE, &PLACES];
+
+/// A query: about a point of the cloud, with the distance of another as its radius.
+#[derive(Clone, Debug)]
+struct Query {
+    cloud: PointCloud<f64>,
+    center: usize,
+    /// The radius is the distance of this point.
+    rim: usize,
+    /// Multiplied with that distance: 1 makes ties with the radius.
+    factor: f64,
+    count: usize,
+}
+
+fn queries() -> impl Strategy<Value = Query> {
+    let factor = prop_oneof![3 => Just(1.0), 1 => 0.0..3.0_f64];
+    let index = any::<prop::sample::Index>;
+    (
+        clouds(1..=9, 1..=40),
+        index(),
+        index(),
+        factor,
+        0..=42_usize,
+    )
+        .prop_map(|(cloud, center, rim, factor, count)| Query {
+            center: center.index(cloud.len()),
+            rim: rim.index(cloud.len()),
+            cloud,
+            factor,
+            count,
+        })
+}
+
+/// Puts an oracle through its laws, on clouds of 1 to 40 points in R^1 to R^9 with copies and ties, with
+/// radii that are distances.
+///
+/// `build` makes the metric that the oracle claims to serve, and the oracle, over the points that
+/// it is given; they may be the same thing twice.
+///
+/// # Errors
+/// The first law that does not hold.
+///
+/// ```
+/// use crosscap_core::laws::{self, Scan, Settings, StraightLine};
+/// laws::oracle(&Settings::default(), |cloud| {
+///     let metric = StraightLine(cloud.clone());
+///     (metric.clone(), Scan(metric))
+/// })
+/// .unwrap();
+/// ```
+pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
+    settings: &Settings,
+    build: impl Fn(&PointCloud<f64>) -> (M, O),
+) -> Result<(), LawBroken> {
+    let queries = queries();
+    type Answers<S> = [Vec<Neighbor<S>>; 2];
+    let junk = || {
+        vec![
+            Neighbor {
+                index: 977,
+                distance: M::Scalar::of(0.5)
+            };
+            3
+        ]
+    };
+    let radius_of = |metric: &M, query: &Query| {
+        let rim = metric.distance(query.center, query.rim).as_f64();
+        M::Scalar::of(rim * query.factor)
+    };
+    // Asks both questions of the oracle and of the scan; the buffers hold `before`.
+    let asked = |query: &Query, before: &[Neighbor<M::Scalar>]| {
+        let (metric, oracle) = build(&query.cloud);
+        let radius = radius_of(&metric, query);
+        let scan = Scan(&metric);
+        let (mut found, mut expected) = ([before.to_vec(), before.to_vec()], [vec![], vec![]]);
+        oracle.within(query.center, radius, &mut found[0]);
+        oracle.nearest(query.center, query.count, &mut found[1]);
+        scan.within(query.center, radius, &mut expected[0]);
+        scan.nearest(query.center, query.count, &mut expected[1]);
+        (radius.as_f64(), found, expected)
+    };
+    let show = |n: &[Neighbor<M::Scalar>]| -> String {
+        let parts: Vec<String> = n
+            .iter()
+            .map(|n| format!("{} at {}", n.index, n.distance.as_f64()))
+            .collect();
+        format!("[{}]", parts.join(", "))
+    };
+    let question = |k: usize, radius: f64, query: &Query| match k {
+        0 => format!("within({}, {radius})", query.center),
+        _ => format!("nearest({}, {})", query.center, query.count),
+    };
+
+    BUFFER.holds(settings, &queries, |query| {
+        let (radius, found, _) = asked(query, &junk());
+        for (k, found) in found.iter().enumerate() {
+            let question = question(k, radius, query);
+            let left = found.iter().any(|n| n.index == 977);
+            ensure!(
+                !left,
+                "{question} left what was in the buffer: {}",
+                show(found)
+            );
+        }
+        Ok(())
+    })?;
+    STRICTNESS.holds(settings, &queries, |query| {
+        let (radius, [found, _], _) = asked(query, &[]);
+        let question = question(0, radius, query);
+        for n in &found {
+            let d = n.distance.as_f64();
+            ensure!(
+                d < radius,
+                "{question} holds point {} at distance {d}",
+                n.index
+            );
+        }
+        let center = found.iter().any(|n| n.index == query.center);
+        ensure!(
+            center || radius.is_nan() || radius <= 0.0,
+            "{question} does not hold its center: {}",
+            show(&found)
+        );
+        Ok(())
+    })?;
+    ORDER.holds(settings, &queries, |query| {
+        let (radius, found, _) = asked(query, &[]);
+        for (k, found) in found.iter().enumerate() {
+            let key = |n: &Neighbor<M::Scalar>| (n.distance.as_f64(), n.index);
+            let sorted = found.windows(2).all(|w| key(&w[0]) < key(&w[1]));
+            ensure!(sorted, "{} is {}", question(k, radius, query), show(found));
+        }
+        Ok(())
+    })?;
+    let distances = |n: &[Neighbor<M::Scalar>]| -> Vec<u64> {
+        n.iter().map(|n| n.distance.as_f64().to_bits()).collect()
+    };
+    TIES.holds(settings, &queries, |query| {
+        let (radius, [_, found], [_, expected]): (_, Answers<_>, Answers<_>) = asked(query, &[]);
+        // Another set of distances is no matter of ties.
+        ensure!(
+            found == expected || distances(&found) != distances(&expected),
+            "{} is {}, expected {}",
+            question(1, radius, query),
+            show(&found),
+            show(&expected)
+        );
+        Ok(())
+    })?;
+    BRUTE_FORCE.holds(settings, &queries, |query| {
+        let (metric, oracle) = build(&query.cloud);
+        ensure!(
+            oracle.len() == metric.len(),
+            "the oracle has {} points, the metric {}",
+            oracle.len(),
+            metric.len()
+        );
+        let (radius, found, expected) = asked(query, &[]);
+        for k in 0..2 {
+            ensure!(
+                found[k] == expected[k],
+                "{} is {}, expected {}",
+                question(k, radius, query),
+                show(&found[k]),
+                show(&expected[k])
+            );
+        }
+        Ok(())
+    })?;
+    PLACES.holds(settings, &queries, |query| {
+        let (metric, oracle) = build(&query.cloud);
+        let radius = radius_of(&metric, query);
+        let place: Vec<M::Scalar> = (query.cloud.point(query.center).iter())
+            .map(|&x| M::Scalar::of(x))
+            .collect();
+        let (mut found, mut expected) = (junk(), vec![]);
+        if oracle.within_of(&place, radius, &mut found) {
+            oracle.within(query.center, radius, &mut expected);
+            ensure!(
+                found == expected,
+                "within_of the place of point {} with radius {radius} is {}, within gives {}",
+                query.center,
+                show(&found),
+                show(&expected)
+            );
+        }
+        Ok(())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::StraightLine;
+    use super::super::reference::sort;
+    use super::super::twins::catches;
+    use super::*;
+
+    #[derive(Clone, Copy, PartialEq)]
+    enum Fault {
+        None,
+        Buffer,
+        Inclusive,
+        Centerless,
+        Unsorted,
+        LargerIndex,
+        Forgetful,
+        Rounded,
+        WideAtPlaces,
+    }
+
+    struct Twin(Scan<StraightLine<f64>>, Fault);
+
+    impl NeighborhoodOracle for Twin {
+        type Scalar = f64;
+        fn len(&self) -> usize {
+            self.0.len()
+        }
+        fn within(&self, center: usize, radius: f64, out: &mut Vec<Neighbor<f64>>) {
+            let mut answer = vec![];
+            let wide = if self.1 == Fault::Inclusive {
+                radius.next_up()
+            } else {
+                radius
+            };
+            self.0.within(center, wide, &mut answer);
+            match self.1 {
+                Fault::Centerless => answer.retain(|n| n.index != center),
+                Fault::Unsorted => answer.sort_by_key(|n| n.index),
+                Fault::Forgetful if answer.len() > 3 => {
+                    answer.pop();
+                }
+                Fault::Rounded => {
+                    answer
+                        .iter_mut()
+                        .for_each(|n| n.distance = f64::from(n.distance as f32));
+                }
+                _ => {}
+            }
+            if self.1 != Fault::Buffer {
+                out.clear();
+            }
+            out.extend(answer);
+        }
+        fn nearest(&self, center: usize, count: usize, out: &mut Vec<Neighbor<f64>>) {
+            if self.1 == Fault::LargerIndex {
+                self.0.nearest(center, usize::MAX, out);
+                out.sort_by(|a, b| {
+                    a.distance
+                        .total_cmp(&b.distance)
+                        .then(b.index.cmp(&a.index))
+                });
+                out.truncate(count);
+                sort(out);
+            } else {
+                self.0.nearest(center, count, out);
+            }
+        }
+        fn within_of(&self, place: &[f64], radius: f64, out: &mut Vec<Neighbor<f64>>) -> bool {
+            out.clear();
+            for index in 0..self.len() {
+                let distance = crate::squared_distance(place, self.0.0.0.point(index)).sqrt();
+                if distance < radius || self.1 == Fault::WideAtPlaces && distance == radius {
+                    out.push(Neighbor { index, distance });
+                }
+            }
+            sort(out);
+            true
+        }
+    }
+
+    fn put(fault: Fault) -> Result<(), LawBroken> {
+        oracle(&Settings::default(), |cloud| {
+            let metric = StraightLine(cloud.clone());
+            (metric.clone(), Twin(Scan(metric), fault))
+        })
+    }
+
+    #[test]
+    fn a_scan_passes() {
+        put(Fault::None).unwrap();
+    }
+
+    #[test]
+    fn every_fault_is_caught_by_its_law() {
+        for (fault, law) in [
+            (Fault::Buffer, &BUFFER),
+            (Fault::Inclusive, &STRICTNESS),
+            (Fault::Centerless, &STRICTNESS),
+            (Fault::Unsorted, &ORDER),
+            (Fault::LargerIndex, &TIES),
+            (Fault::Forgetful, &BRUTE_FORCE),
+            (Fault::Rounded, &BRUTE_FORCE),
+            (Fault::WideAtPlaces, &PLACES),
+        ] {
+            catches(put(fault), law);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! For every law there is an implementation that breaks it and nothing before it.
+
+use super::{Law, LawBroken};
+
+/// Sources of the modules that state laws.
+const SOURCES: [&str; 9] = [
+    include_str!("metric.rs"),
+    include_str!("neighborhood.rs"),
+    include_str!("dimension.rs"),
+    include_str!("singularity.rs"),
+    include_str!("chart.rs"),
+    include_str!("landmarks.rs"),
+    include_str!("compatibility.rs"),
+    include_str!("rule.rs"),
+    include_str!("result.rs"),
+];
+
+#[test]
+fn every_law_is_listed_and_has_a_twin() {
+    let mut stated = 0;
+    for source in SOURCES {
+        let (laws, tests) = source.split_once("mod tests {").unwrap();
+        let tests: String = tests.split_whitespace().collect();
+        for line in laws.lines() {
+            let name = line
+                .strip_prefix("static ")
+                .and_then(|l| l.strip_suffix(": Law = Law {"));
+            if let Some(name) = name {
+                stated += 1;
+                let named = [")", ",)"].map(|end| format!("&{name}{end}"));
+                assert!(
+                    named.iter().any(|n| tests.contains(n)),
+                    "no twin breaks {name}"
+                );
+            }
+        }
+    }
+    let all = super::all();
+    assert_eq!(all.len(), stated);
+    let mut names: Vec<_> = all.iter().map(|l| (l.subject, l.name)).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), stated, "two laws of one name");
+}
+
+#[test]
+fn a_failure_is_found_again() {
+    struct Squared(super::StraightLine<f64>);
+    impl crate::MetricSpace for Squared {
+        type Scalar = f64;
+        fn len(&self) -> usize {
+            self.0.len()
+        }
+        fn distance(&self, a: usize, b: usize) -> f64 {
+            self.0.distance(a, b).powi(2)
+        }
+        fn name(&self) -> &str {
+            "squared"
+        }
+    }
+    let put = |seed| {
+        let settings = super::Settings {
+            seed,
+            ..super::Settings::default()
+        };
+        super::metric(&settings, |cloud| {
+            Squared(super::StraightLine(cloud.clone()))
+        })
+        .unwrap_err()
+    };
+    let first = put(1);
+    assert_eq!(first, put(1));
+    // Shrunk to the least there can be: three points on a line.
+    assert!(
+        first.input.starts_with("PointCloud { dimension: 1,"),
+        "{first}"
+    );
+    assert_eq!(first.input.matches(',').count(), 3, "{first}");
+    assert_eq!(first.law, put(2).law);
+}
+
+/// The report, which must be about this law and say all there is to say.
+#[track_caller]
+pub(super) fn catches(found: Result<(), LawBroken>, law: &'static Law) -> LawBroken {
+    let broken = match found {
+        Ok(()) => panic!(
+            "nothing was found wrong, expected '{}' of {}",
+            law.name, law.subject
+        ),
+        Err(broken) => broken,
+    };
+    assert_eq!(
+        (broken.law.subject, broken.law.name),
+        (law.subject, law.name),
+        "{broken}"
+    );
+    let text = broken.to_string();
+    for part in [
+        law.name,
+        law.subject,
+        law.look_for,
+        &broken.input,
+        &broken.found,
+    ] {
+        assert!(!part.is_empty() && text.contains(part), "{text}");
+    }
+    assert_eq!(text, format!("{broken:?}"));
+    broken
+}
