@@ -65,13 +65,10 @@ pub fn surface(
         ..CertificateOptions::default()
     };
     let certificate = certify(mesh, &options);
-    let Some(links) = certificate.links else {
-        let first = certificate.indices.violations.first();
-        return Err(broken(
-            &UNUSABLE,
-            first.map(ToString::to_string).unwrap_or_default(),
-        ));
-    };
+    if let Some(first) = certificate.indices.violations.first() {
+        return Err(broken(&UNUSABLE, first.to_string()));
+    }
+    let links = certificate.links.unwrap_or_default();
     let groups = homology(complex).map_err(|e| broken(&UNUSABLE, e.to_string()))?;
     laws::euler_poincare(complex, groups.betti_rational)?;
     for p in [2, 3] {
