@@ -27,7 +27,8 @@ pub trait LocalChart: Sync {
     /// unit of the data). Point 0 is the center of the neighborhood.
     ///
     /// # Errors
-    /// [`Error::Shape`] when `distances` is not `count * count` long or not finite.
+    /// [`Error::Shape`] when `distances` is not `count * count` long, [`Error::NotFinite`] for
+    /// one that is not a finite number.
     fn chart(&self, count: usize, distances: &[f64], dimension: usize) -> Result<Chart, Error>;
 
     /// Short name for reports.

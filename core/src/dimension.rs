@@ -23,7 +23,7 @@ pub struct DimensionEstimate {
 /// - *motion*: the same answer after a rigid motion, within rounding;
 /// - *scale*: the same answer after uniform scaling of data and radius;
 /// - *embedding*: the same answer after an isometric embedding in a larger space;
-/// - *order*: the same answer for any order of the neighbors, within rounding.
+/// - *order*: the same answer for any order of the points of the cloud, within rounding.
 pub trait DimensionEstimator: Sync {
     /// Type of the coordinates.
     type Scalar: Scalar;

@@ -77,7 +77,7 @@ pub enum Error {
         parameter: &'static str,
     },
     /// The triangulation could not be completed.
-    #[error("{reason} at landmark {landmark} (point {point:?}): change {parameter}")]
+    #[error("{reason} at landmark {landmark}{}: change {parameter}", .point.map_or(String::new(), |p| format!(" (point {p})")))]
     Triangulation {
         /// What went wrong.
         reason: String,

@@ -78,7 +78,7 @@ pub enum Rejection {
 ///
 /// # Laws
 /// - *motion*: the same decomposition, up to the names of the cells, after a motion of the
-///   local coordinates;
+///   data, from which principal coordinates are taken anew (signs of axes are arbitrary);
 /// - *order*: the same decomposition for any order of the points;
 /// - *partition*: every point has exactly one label;
 /// - *exact data*: residual 0, within rounding, on points of an exact instance, and growing with noise.

@@ -30,6 +30,9 @@ const JOIN: f64 = 2.0;
 const STRETCHES: usize = 16;
 const STRETCH_STEP: f64 = 0.025;
 
+/// Longest edge, landmarks and edges of a chain.
+type Laid = (f64, Vec<usize>, Vec<(usize, usize)>);
+
 /// One kind of curve.
 struct Kind {
     role: Role,
@@ -197,7 +200,7 @@ impl Curves {
         });
         let (order, _) = sweep(graph, &[start], inside);
         let before = self.rows.len();
-        let mut best: Option<(f64, Vec<usize>, Vec<(usize, usize)>)> = None;
+        let mut best: Option<Laid> = None;
         for stretch in 0..STRETCHES {
             let separation = dl * (1.0 + STRETCH_STEP * stretch as f64);
             let mut chosen: Vec<usize> = Vec::new();

@@ -52,7 +52,7 @@ pub(super) fn circumradius(a: f64, b: f64, c: f64) -> f64 {
     // Kahan's form of Heron's formula: 16 K^2 without cancellation.
     let square = (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z));
     if square > 1e-24 * x.powi(4) {
-        a * b * c / square.sqrt()
+        x * y * z / square.sqrt()
     } else {
         f64::INFINITY
     }
