@@ -9,6 +9,7 @@ pub mod homology;
 pub mod isomap;
 pub mod landmarks;
 pub mod metric;
+pub mod moments;
 pub mod pieces;
 pub mod predicate;
 pub mod principal;
