@@ -42,15 +42,25 @@ impl Directions {
         }
         let rounds = if self.warm { WARM_ROUNDS } else { COLD_ROUNDS };
         for _ in 0..rounds {
-            self.image.clear();
-            for v in self.rows.chunks_exact(n) {
-                self.image.extend(dense.chunks_exact(n).map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum::<f64>()));
-            }
+            self.multiply(dense, n);
             std::mem::swap(&mut self.image, &mut self.rows);
             self.orthonormalize(n);
         }
         self.warm = true;
         self.sort(dense, m, n);
+    }
+
+    /// Writes the symmetric `dense` times every direction to `image`.
+    fn multiply(&mut self, dense: &[f64], n: usize) {
+        self.image.clear();
+        self.image.resize(self.rows.len(), 0.0);
+        for (v, out) in self.rows.chunks_exact(n).zip(self.image.chunks_exact_mut(n)) {
+            for (row, x) in dense.chunks_exact(n).zip(v) {
+                for (o, a) in out.iter_mut().zip(row) {
+                    *o += a * x;
+                }
+            }
+        }
     }
 
     fn orthonormalize(&mut self, n: usize) {
@@ -89,10 +99,7 @@ impl Directions {
 
     /// Turns them within their span, to falling variance.
     fn sort(&mut self, dense: &[f64], m: usize, n: usize) {
-        self.image.clear();
-        for v in self.rows.chunks_exact(n) {
-            self.image.extend(dense.chunks_exact(n).map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum::<f64>()));
-        }
+        self.multiply(dense, n);
         let (rows, image) = (&self.rows, &self.image);
         let ritz = SMatrix::<f64, LEADING, LEADING>::from_fn(|i, j| {
             if i >= m || j >= m {

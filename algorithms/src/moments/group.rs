@@ -6,7 +6,8 @@
 //! directions are kept, and of the rest the distance from their span, which brackets both
 //! distances and spectra; what a bracket does not settle is looked up in all coordinates.
 
-use super::decide::{self, LEADING};
+use super::LocalDimension;
+use super::decide;
 use super::frame::Directions;
 use super::packed;
 use super::reach::Reach;
@@ -22,7 +23,7 @@ const WIDEST: f64 = 0.5;
 const COMPLEMENT: f64 = 0.6;
 /// Relative error of the covariance from which it is computed from the original coordinates.
 const ACCURACY: f64 = 1e-10;
-/// Centers of distances that cannot be told from the radius count as verified.
+/// Where no point is.
 const FAR: f32 = f32::INFINITY;
 
 /// Consecutive centers.
@@ -38,11 +39,12 @@ pub(super) struct Group {
 pub(super) fn groups<S: Scalar>(reach: &Reach<'_, S>) -> Vec<Group> {
     let tree = reach.tree;
     let mut groups = Vec::new();
+    let most = std::env::var("MC").map_or(MOST_CENTERS, |x| x.parse().unwrap()); // DBG
     let mut at = 0;
     // Preorder: a node that becomes a group is followed by what comes after its subtree.
     while at < tree.nodes.len() {
         let node = &tree.nodes[at];
-        if node.radius <= WIDEST * reach.unit && node.count() <= MOST_CENTERS {
+        if node.radius <= WIDEST * reach.unit && node.count() <= most {
             groups.push(Group { start: node.start, end: node.end, node: Some(at as u32) });
             let end = node.end;
             while at < tree.nodes.len() && tree.nodes[at].start < end {
@@ -70,7 +72,21 @@ struct Parts {
     /// Single slots that are outside, of the units in `most`.
     minus: Vec<u32>,
     straddling: Vec<u32>,
+    /// What is used of `plus` and `minus`.
+    plus_length: usize,
+    minus_length: usize,
+    /// Points in the ball.
     count: u32,
+}
+
+impl Parts {
+    fn plus(&self) -> &[u32] {
+        &self.plus[..self.plus_length]
+    }
+
+    fn minus(&self) -> &[u32] {
+        &self.minus[..self.minus_length]
+    }
 }
 
 /// What is found out about one ball.
@@ -84,12 +100,12 @@ pub(super) struct Ball<'a> {
     pub(super) center: &'a [f64],
 }
 
-/// Workspace for one group after the other. `L` is the most points of a leaf.
-pub(super) struct Sweep<'a, S: Scalar, const L: usize> {
+/// Workspace for one group after the other. `L` is the most points of a leaf, `M` the number of
+/// coordinates of the frame, of which those beyond `n` are zero.
+pub(super) struct Sweep<'a, S: Scalar, const L: usize, const M: usize> {
     reach: &'a Reach<'a, S>,
-    /// Coordinates of the tree, and directions of the frame.
+    /// Coordinates of the tree.
     n: usize,
-    m: usize,
     /// Whether there are directions beside those of the frame.
     rest: bool,
     /// Numbers summed over a ball: products, coordinates, squared distance from the span.
@@ -108,6 +124,8 @@ pub(super) struct Sweep<'a, S: Scalar, const L: usize> {
     common_features: Vec<f64>,
     dense: Vec<f64>,
     directions: Directions,
+    /// The directions coordinate by coordinate.
+    columns: Vec<[f64; M]>,
     /// Coordinates of the fringe, unit by unit, direction by direction, lane by lane.
     lanes: Vec<[f32; L]>,
     /// Middle of every unit, direction by direction, its radius, its largest distance from the span.
@@ -121,21 +139,21 @@ pub(super) struct Sweep<'a, S: Scalar, const L: usize> {
     parts: Parts,
     full_sum: Vec<f64>,
     full_products: Vec<f64>,
-    local: Vec<f64>,
+    /// The place that was looked at last, in the frame, and its distance from the span.
+    local: [f64; M],
+    beside: f64,
     rows: Vec<usize>,
 }
 
-impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
+impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
     pub(super) fn new(reach: &'a Reach<'a, S>) -> Self {
         let n = reach.tree.n;
-        let m = n.min(LEADING);
-        let rest = n > m;
+        let rest = n > M;
         Self {
             reach,
             n,
-            m,
             rest,
-            width: (packed::length(m) + m + usize::from(rest)).next_multiple_of(2),
+            width: (packed::length(M) + M + 1).next_multiple_of(2),
             center: vec![0.0; n],
             offset: vec![0.0; n],
             shell: 0.0,
@@ -149,6 +167,7 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
             common_features: Vec::new(),
             dense: Vec::new(),
             directions: Directions::default(),
+            columns: vec![[0.0; M]; n],
             lanes: Vec::new(),
             middles: Vec::new(),
             radii: Vec::new(),
@@ -160,7 +179,8 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
             parts: Parts::default(),
             full_sum: Vec::new(),
             full_products: Vec::new(),
-            local: vec![0.0; m + 1],
+            local: [0.0; M],
+            beside: 0.0,
             rows: Vec::new(),
         }
     }
@@ -177,13 +197,13 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
 
     /// Count and dimension of every ball of the group, in the order of the tree.
     #[inline(always)]
-    pub(super) fn dimensions(&mut self, group: Group, dt: f64, out: &mut Vec<(u32, u32)>) {
+    pub(super) fn dimensions(&mut self, group: Group, dt: f64, out: &mut Vec<LocalDimension>) {
         self.prepare(group);
         for position in group.start as usize..group.end as usize {
             self.part(position);
             let count = self.parts.count;
             let dimension = if count <= 1 { 0 } else { self.dimension(dt) };
-            out.push((count, dimension));
+            out.push(LocalDimension { count, dimension });
         }
     }
 
@@ -222,6 +242,11 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
         self.descend(width * self.reach.inverse);
         self.sum_common();
         self.turn();
+        for (i, row) in self.directions.rows.chunks_exact(self.n).enumerate() {
+            for (column, x) in self.columns.iter_mut().zip(row) {
+                column[i] = *x;
+            }
+        }
         self.copy_fringe();
         self.compress_common();
     }
@@ -237,8 +262,7 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
         while let Some(at) = self.stack.pop() {
             let node = &tree.nodes[at as usize];
             let mean = tree.mean(at as usize);
-            let square: f64 = mean.iter().zip(&self.center).map(|(a, b)| (a - b) * (a - b)).sum();
-            let gap = square.sqrt() * self.reach.inverse;
+            let gap = squared_gap(mean, &self.center).sqrt() * self.reach.inverse;
             let radius = node.radius * self.reach.inverse;
             if gap * (1.0 - 1e-9) - width - radius >= far {
                 continue;
@@ -278,7 +302,8 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
     /// Finds the directions of the frame.
     #[inline(always)]
     fn turn(&mut self) {
-        let (n, m) = (self.n, self.m);
+        let n = self.n;
+        let m = n.min(M);
         if n <= 3 || !self.has_moments() {
             return self.directions.reset(m, n);
         }
@@ -309,77 +334,87 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
         self.directions.follow(&self.dense, m, n);
     }
 
-    /// Writes a place in the frame to `local`: coordinates and distance from the span.
+    /// Writes a place in the frame to `local` and `beside`.
     #[inline(always)]
     fn localize(&mut self, position: usize) {
-        let (n, m) = (self.n, self.m);
         let place = self.reach.tree.place(position);
-        let mut square = 0.0;
         for ((o, y), c) in self.offset.iter_mut().zip(place).zip(&self.center) {
             *o = (y - c) * self.reach.inverse;
-            square += *o * *o;
         }
-        if n <= 3 {
-            self.local[..n].copy_from_slice(&self.offset);
-            self.local[m] = 0.0;
+        self.local = [0.0; M];
+        if self.n <= 3 {
+            for (z, o) in self.local.iter_mut().zip(&self.offset) {
+                *z = *o;
+            }
             return;
         }
-        for (row, z) in self.directions.rows.chunks_exact(n).zip(&mut self.local) {
-            *z = row.iter().zip(&self.offset).map(|(a, b)| a * b).sum();
-            square -= *z * *z;
+        // Direction by direction it would be a chain of dependent additions.
+        let mut local = [0.0; M];
+        for (column, x) in self.columns.iter().zip(&self.offset) {
+            for (z, d) in local.iter_mut().zip(column) {
+                *z += d * x;
+            }
         }
-        self.local[m] = square.max(0.0).sqrt();
+        self.local = local;
+        if self.rest {
+            let inner: f64 = local.iter().map(|z| z * z).sum();
+            self.beside = (sum_of_squares(&self.offset) - inner).max(0.0).sqrt();
+        }
     }
 
     #[inline(always)]
     fn copy_fringe(&mut self) {
-        let (m, width) = (self.m, self.width);
+        let width = self.width;
         let units = self.fringe.len();
         let tree = self.reach.tree;
-        let tests = m + usize::from(self.rest);
+        let tests = M + usize::from(self.rest);
         self.lanes.clear();
         self.lanes.resize(units * tests, [FAR; L]);
-        self.features.clear();
-        self.features.resize(units * L * width, 0.0);
-        self.unit_features.clear();
-        self.unit_features.resize(units * width, 0.0);
-        self.middles.clear();
-        self.middles.resize(units * m, 0.0);
+        // A slot without a point is never read, a unit is written as a whole.
+        self.features.resize(self.features.len().max(units * L * width), 0.0);
+        self.unit_features.resize(self.unit_features.len().max(units * width), 0.0);
+        self.middles.resize(self.middles.len().max(units * M), 0.0);
         self.radii.clear();
         self.rests.clear();
-        self.gaps.clear();
         self.gaps.resize(units, 0.0);
         for unit in 0..units {
             let node = &tree.nodes[self.fringe[unit] as usize];
             let (start, count) = (node.start as usize, node.count());
             let mut farthest_rest = 0.0_f64;
-            let mut middle = [0.0; LEADING];
-            for lane in 0..count {
+            let mut places = [[0.0; M]; L];
+            let at = unit * L * width;
+            self.unit_features[unit * width..(unit + 1) * width].fill(0.0);
+            self.features[at + count * width..at + L * width].fill(0.0);
+            for (lane, place) in places.iter_mut().enumerate().take(count) {
                 self.localize(start + lane);
-                let at = (unit * L + lane) * width;
-                let features = &mut self.features[at..at + width];
-                write_features(&self.local[..m], self.local[m], self.rest, features);
+                *place = self.local;
+                let features = &mut self.features[at + lane * width..at + (lane + 1) * width];
+                write_features(place, self.beside, features);
                 let own = &mut self.unit_features[unit * width..(unit + 1) * width];
                 for (s, f) in own.iter_mut().zip(&*features) {
                     *s += f;
                 }
-                for k in 0..tests {
-                    self.lanes[unit * tests + k][lane] = self.local[k] as f32;
+                farthest_rest = farthest_rest.max(self.beside);
+                if self.rest {
+                    self.lanes[unit * tests + M][lane] = self.beside as f32;
                 }
-                for k in 0..m {
-                    middle[k] += self.local[k] / count as f64;
+            }
+            let lanes = &mut self.lanes[unit * tests..unit * tests + M];
+            let mut middle = [0.0; M];
+            let share = 1.0 / count as f64;
+            for (lane, place) in places.iter().enumerate().take(count) {
+                for k in 0..M {
+                    lanes[k][lane] = place[k] as f32;
+                    middle[k] += place[k] * share;
                 }
-                farthest_rest = farthest_rest.max(self.local[m]);
             }
             let mut farthest = 0.0_f64;
-            for lane in 0..count {
-                let at = (unit * L + lane) * width + packed::length(m);
-                let place = &self.features[at..at + m];
+            for place in &places[..count] {
                 let square: f64 = place.iter().zip(&middle).map(|(a, b)| (a - b) * (a - b)).sum();
                 farthest = farthest.max(square);
             }
-            for k in 0..m {
-                self.middles[k * units + unit] = middle[k] as f32;
+            for (k, x) in middle.iter().enumerate() {
+                self.middles[k * units + unit] = *x as f32;
             }
             self.radii.push((farthest.sqrt() * (1.0 + 1e-6)) as f32);
             self.rests.push((farthest_rest * (1.0 + 1e-6)) as f32);
@@ -389,7 +424,7 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
     /// The common moments in the frame.
     #[inline(always)]
     fn compress_common(&mut self) {
-        let (n, m) = (self.n, self.m);
+        let n = self.n;
         self.common_features.clear();
         self.common_features.resize(self.width, 0.0);
         if self.common_products.is_empty() {
@@ -397,37 +432,32 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
         }
         let inverse = self.reach.inverse;
         let square = inverse * inverse;
-        let length = packed::length(m);
-        if n <= 3 {
-            for (f, p) in self.common_features.iter_mut().zip(&self.common_products) {
-                *f = p * square;
-            }
-            for (f, s) in self.common_features[length..].iter_mut().zip(&self.common_sum) {
-                *f = s * inverse;
-            }
-            return;
-        }
+        let length = packed::length(M);
         packed::unfold(&self.common_products, n, &mut self.dense);
         let rows = &self.directions.rows;
         let mut inner = 0.0;
-        let mut at = 0;
-        for i in 0..m {
-            let v = &rows[i * n..(i + 1) * n];
-            for (o, row) in self.offset.iter_mut().zip(self.dense.chunks_exact(n)) {
-                *o = row.iter().zip(v).map(|(a, b)| a * b).sum();
+        let mut first = 0;
+        for (i, v) in rows.chunks_exact(n).enumerate() {
+            self.offset.fill(0.0);
+            for (row, x) in self.dense.chunks_exact(n).zip(v) {
+                for (o, a) in self.offset.iter_mut().zip(row) {
+                    *o += a * x;
+                }
             }
-            for w in rows[i * n..].chunks_exact(n) {
+            for (j, w) in rows.chunks_exact(n).enumerate().skip(i) {
                 let product = w.iter().zip(&self.offset).map(|(a, b)| a * b).sum::<f64>() * square;
-                if std::ptr::eq(w.as_ptr(), v.as_ptr()) {
+                if i == j {
                     inner += product;
                 }
-                self.common_features[at] = product;
-                at += 1;
+                self.common_features[first + j - i] = product;
             }
-            self.common_features[length + i] = v.iter().zip(&self.common_sum).map(|(a, b)| a * b).sum::<f64>() * inverse;
+            first += M - i;
+            self.common_features[length + i] =
+                v.iter().zip(&self.common_sum).map(|(a, b)| a * b).sum::<f64>() * inverse;
         }
         if self.rest {
-            self.common_features[length + m] = (packed::trace(&self.common_products, n) * square - inner).max(0.0);
+            let whole = packed::trace(&self.common_products, n) * square;
+            self.common_features[length + M] = (whole - inner).max(0.0);
         }
     }
 
@@ -435,22 +465,19 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
     #[inline(always)]
     fn part(&mut self, position: usize) {
         self.localize(position);
-        let m = self.m;
         let units = self.fringe.len();
-        let tests = m + usize::from(self.rest);
-        let mut query = [0.0_f32; LEADING + 1];
-        for (q, z) in query.iter_mut().zip(&self.local) {
-            *q = *z as f32;
-        }
-        let own_rest = if self.rest { query[m] } else { 0.0 };
+        let tree = self.reach.tree;
+        let tests = M + usize::from(self.rest);
+        let query = self.local.map(|z| z as f32);
+        let beside = self.beside as f32;
         let shell = self.shell as f32;
-        // Beyond 1 the shell is everything, NaN refuses every comparison.
-        let near_limit = if shell < 0.5 { 1.0 - 2.0 * shell } else { f32::NAN };
-        let far_limit = if shell < 0.5 { 1.0 + 4.0 * shell } else { f32::INFINITY };
+        // Where the shell is everything: NaN refuses every comparison.
+        let (near_limit, far_limit) =
+            if shell < 0.1 { (1.0 - 2.0 * shell, 1.0 + 4.0 * shell) } else { (f32::NAN, f32::INFINITY) };
 
         self.gaps.fill(0.0);
-        for (k, q) in query[..m].iter().enumerate() {
-            for (g, c) in self.gaps.iter_mut().zip(&self.middles[k * units..(k + 1) * units]) {
+        for (q, middles) in query.iter().zip(self.middles.chunks_exact(units.max(1))) {
+            for (g, c) in self.gaps.iter_mut().zip(middles) {
                 *g += (c - q) * (c - q);
             }
         }
@@ -459,14 +486,15 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
         let parts = &mut self.parts;
         parts.inside.resize(units, 0);
         parts.straddling.resize(units, 0);
-        parts.plus.resize(units * L, 0);
-        parts.minus.resize(units * L, 0);
         parts.most.clear();
+        for list in [&mut parts.plus, &mut parts.minus] {
+            list.resize(list.len().max((units + 1) * L), 0);
+        }
         let (mut inside, mut straddling) = (0, 0);
         for unit in 0..units {
             let (gap, radius) = (self.gaps[unit], self.radii[unit]);
-            let (outer, beside) = (gap + radius, self.rests[unit] + own_rest);
-            let within = outer * outer + beside * beside < near_limit;
+            let (outer, across) = (gap + radius, self.rests[unit] + beside);
+            let within = outer * outer + across * across < near_limit;
             let without = gap - radius > far_limit;
             parts.inside[inside] = unit as u32;
             inside += usize::from(within);
@@ -476,7 +504,6 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
         parts.inside.truncate(inside);
 
         let mut count = self.common_count;
-        let tree = self.reach.tree;
         for &unit in &parts.inside {
             count += tree.nodes[self.fringe[unit as usize] as usize].count() as u32;
         }
@@ -484,16 +511,16 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
         for &unit in &parts.straddling[..straddling] {
             let lanes = &self.lanes[unit as usize * tests..(unit as usize + 1) * tests];
             let mut low = [0.0_f32; L];
-            for (row, q) in lanes[..m].iter().zip(&query) {
+            for (row, q) in lanes.iter().zip(&query) {
                 for (s, x) in low.iter_mut().zip(row) {
                     *s += (x - q) * (x - q);
                 }
             }
             let mut high = low;
             if self.rest {
-                for ((l, h), x) in low.iter_mut().zip(&mut high).zip(&lanes[m]) {
-                    *l += (x - own_rest) * (x - own_rest);
-                    *h += (x + own_rest) * (x + own_rest);
+                for ((l, h), x) in low.iter_mut().zip(&mut high).zip(&lanes[M]) {
+                    *l += (x - beside) * (x - beside);
+                    *h += (x + beside) * (x + beside);
                 }
             }
             let mut within = 0_u32;
@@ -504,83 +531,59 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
             }
             let node = &tree.nodes[self.fringe[unit as usize] as usize];
             let own = node.count();
+            let mut limit = near_limit;
             if within != reached {
-                within = settle(self.reach, position, node.start as usize, &low[..own], &mut high, near_limit, far_limit);
+                limit = 0.5;
+                within = settle(self.reach, position, node.start as usize, &low[..own], &mut high, [near_limit, far_limit]);
             }
-            // Padding is out; in a verified unit `high` is 0 or infinite.
             count += within;
-            let first = unit as usize * L;
-            let limit = if near_limit.is_nan() { 0.5 } else { near_limit };
+            let first = unit * L as u32;
+            // Subtracting from a unit that reaches far out would lose what is left.
             let compact = self.radii[unit as usize] < 2.0;
-            if within as f64 >= COMPLEMENT * own as f64 && compact {
+            if f64::from(within) >= COMPLEMENT * own as f64 && compact {
                 parts.most.push(unit);
-                let list = &mut parts.minus[minus..minus + L];
-                let mut length = 0;
-                for (lane, h) in high.iter().enumerate() {
-                    list[length] = (first + lane) as u32;
-                    length += usize::from(!(*h < limit));
-                    if length == L {
-                        break;
-                    }
+                for (lane, h) in (first..).zip(&high[..own]) {
+                    parts.minus[minus] = lane;
+                    minus += usize::from(*h >= limit);
                 }
-                minus += length.min(L);
             } else {
-                let list = &mut parts.plus[plus..plus + L];
-                let mut length = 0;
-                for (lane, h) in high.iter().enumerate() {
-                    list[length] = (first + lane) as u32;
-                    length += usize::from(*h < limit);
-                    if length == L {
-                        break;
-                    }
+                for (lane, h) in (first..).zip(&high) {
+                    parts.plus[plus] = lane;
+                    plus += usize::from(*h < limit);
                 }
-                plus += length;
             }
         }
-        parts.plus.truncate(plus);
-        parts.minus.truncate(minus);
+        parts.plus_length = plus;
+        parts.minus_length = minus;
         parts.count = count;
     }
 
     /// The dimension of the ball whose parts were found last.
     #[inline(always)]
     fn dimension(&mut self, dt: f64) -> u32 {
-        let m = self.m;
         if !self.has_moments() {
             return self.naive(dt);
         }
         let mut sum = std::mem::take(&mut self.sum);
         sum.clone_from(&self.common_features);
-        match self.width {
-            2 => self.add_features::<2>(&mut sum),
-            6 => self.add_features::<6>(&mut sum),
-            10 => self.add_features::<10>(&mut sum),
-            14 | 28 => self.add_features::<14>(&mut sum),
-            20 => self.add_features::<10>(&mut sum),
-            _ => self.add_features::<2>(&mut sum),
-        }
+        if M <= 3 { self.add_features::<10>(&mut sum) } else { self.add_features::<14>(&mut sum) }
         self.sum = sum;
-        let length = packed::length(m);
+        let length = packed::length(M);
         let share = 1.0 / f64::from(self.parts.count);
+        self.sum.iter_mut().for_each(|x| *x *= share);
         let (products, tail) = self.sum.split_at_mut(length);
-        let second_moment = (packed::trace(products, m) + if self.rest { tail[m] } else { 0.0 }) * share;
-        for x in tail[..m].iter_mut() {
-            *x *= share;
-        }
-        for x in products.iter_mut() {
-            *x *= share;
-        }
-        packed::add_square(products, &tail[..m], -1.0);
-        let rest = if self.rest { (tail[m] * share).max(0.0) } else { 0.0 };
-        let trace = packed::trace(products, m);
+        let rest = if self.rest { tail[M].max(0.0) } else { 0.0 };
+        let second_moment = packed::trace(products, M) + rest;
+        packed::add_square(products, &tail[..M], -1.0);
+        let trace = packed::trace(products, M);
         if !self.accurate(trace, second_moment) {
             return self.naive(dt);
         }
         let products = &self.sum[..length];
-        if m <= 3 {
-            return decide::small(products, m, dt);
+        if M <= 3 {
+            return decide::small(products, M, dt);
         }
-        if let Some(dimension) = decide::compressed(products, m, rest, dt) {
+        if let Some(dimension) = decide::compressed(products, M, rest, dt) {
             return dimension;
         }
         if self.full() { self.spectrum(dt) } else { self.naive(dt) }
@@ -601,8 +604,8 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
             own.copy_from_slice(&sum[at..at + W]);
             add_rows::<W, true>(&mut own, &self.unit_features[at..], width, &self.parts.inside);
             add_rows::<W, true>(&mut own, &self.unit_features[at..], width, &self.parts.most);
-            add_rows::<W, true>(&mut own, &self.features[at..], width, &self.parts.plus);
-            add_rows::<W, false>(&mut own, &self.features[at..], width, &self.parts.minus);
+            add_rows::<W, true>(&mut own, &self.features[at..], width, self.parts.plus());
+            add_rows::<W, false>(&mut own, &self.features[at..], width, self.parts.minus());
             sum[at..at + W].copy_from_slice(&own);
         }
     }
@@ -627,7 +630,7 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
             }
             packed::add_shifted(&mut products, tree.scatter(at), &self.offset, count, 1.0);
         }
-        for (list, sign) in [(&parts.plus, 1.0), (&parts.minus, -1.0)] {
+        for (list, sign) in [(parts.plus(), 1.0), (parts.minus(), -1.0)] {
             for &slot in list {
                 let node = &tree.nodes[self.fringe[slot as usize / L] as usize];
                 let position = node.start as usize + slot as usize % L;
@@ -676,14 +679,14 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
             let node = &tree.nodes[self.fringe[unit as usize] as usize];
             add(node.start, node.end);
         }
-        for &slot in &self.parts.plus {
+        for &slot in self.parts.plus() {
             let position = tree.nodes[self.fringe[slot as usize / L] as usize].start + slot % L as u32;
             add(position, position + 1);
         }
         for &unit in &self.parts.most {
             let node = &tree.nodes[self.fringe[unit as usize] as usize];
             for position in node.start..node.end {
-                if !self.parts.minus.contains(&(unit * L as u32 + position - node.start)) {
+                if !self.parts.minus().contains(&(unit * L as u32 + position - node.start)) {
                     add(position, position + 1);
                 }
             }
@@ -700,7 +703,7 @@ impl<'a, S: Scalar, const L: usize> Sweep<'a, S, L> {
     }
 }
 
-/// Decides about the points of a unit that are too near to the sphere, sets their entry of `high`
+/// Decides about the points of a unit that are too near to the sphere, sets all entries of `high`
 /// to 0 or infinity, and returns how many points of the unit are inside.
 #[cold]
 fn settle<S: Scalar>(
@@ -709,34 +712,61 @@ fn settle<S: Scalar>(
     start: usize,
     low: &[f32],
     high: &mut [f32],
-    near_limit: f32,
-    far_limit: f32,
+    [near_limit, far_limit]: [f32; 2],
 ) -> u32 {
     let mut within = 0;
     for (lane, (l, h)) in low.iter().zip(high).enumerate() {
-        if !(*h < near_limit) {
-            let inside = !(*l > far_limit) && reach.holds(position, start + lane);
-            *h = if inside { 0.0 } else { FAR };
-        }
-        within += u32::from(*h < 0.5 || *h < near_limit);
+        let inside = *h < near_limit || (*l <= far_limit && reach.holds(position, start + lane));
+        *h = if inside { 0.0 } else { FAR };
+        within += u32::from(inside);
     }
     within
 }
 
+/// Squared distance, in four chains of additions.
+#[inline(always)]
+fn squared_gap(a: &[f64], b: &[f64]) -> f64 {
+    let mut lanes = [0.0; 4];
+    let (mut p, mut q) = (a.chunks_exact(4), b.chunks_exact(4));
+    for (x, y) in (&mut p).zip(&mut q) {
+        for k in 0..4 {
+            lanes[k] += (x[k] - y[k]) * (x[k] - y[k]);
+        }
+    }
+    let rest: f64 = p.remainder().iter().zip(q.remainder()).map(|(x, y)| (x - y) * (x - y)).sum();
+    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + rest
+}
+
+/// Squared length, in four chains of additions.
+#[inline(always)]
+fn sum_of_squares(v: &[f64]) -> f64 {
+    let mut lanes = [0.0; 4];
+    let mut p = v.chunks_exact(4);
+    for x in &mut p {
+        for k in 0..4 {
+            lanes[k] += x[k] * x[k];
+        }
+    }
+    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + p.remainder().iter().map(|x| x * x).sum::<f64>()
+}
+
 /// Products, coordinates and squared distance from the span.
 #[inline(always)]
-fn write_features(place: &[f64], rest: f64, has_rest: bool, out: &mut [f64]) {
-    let m = place.len();
+fn write_features<const M: usize>(place: &[f64; M], beside: f64, out: &mut [f64]) {
     let mut at = 0;
-    for i in 0..m {
-        for j in i..m {
+    for i in 0..M {
+        for j in i..M {
             out[at] = place[i] * place[j];
             at += 1;
         }
     }
-    out[at..at + m].copy_from_slice(place);
-    if has_rest {
-        out[at + m] = rest * rest;
+    for x in place {
+        out[at] = *x;
+        at += 1;
+    }
+    // With three coordinates there is nothing beside them.
+    if at < out.len() {
+        out[at] = beside * beside;
     }
 }
 

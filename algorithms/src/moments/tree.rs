@@ -60,10 +60,10 @@ impl Tree {
             nodes: Vec::new(),
             means: Vec::new(),
             scatters: Vec::new(),
-            leaf: if n <= 4 { 8 } else { 16 },
+            leaf: if n <= 3 { 8 } else { 16 },
         };
         if !order.is_empty() {
-            tree.split(&unordered, &mut order, 0);
+            tree.split(&unordered, &mut order, 0, &mut Vec::new());
         }
         tree.places.reserve_exact(unordered.len());
         for &i in &order {
@@ -75,7 +75,7 @@ impl Tree {
         tree
     }
 
-    fn split(&mut self, unordered: &[f64], rows: &mut [u32], start: u32) {
+    fn split(&mut self, unordered: &[f64], rows: &mut [u32], start: u32, keyed: &mut Vec<(f64, u32)>) {
         let n = self.n;
         let at = self.nodes.len();
         let count = rows.len();
@@ -83,32 +83,25 @@ impl Tree {
         if count <= self.leaf {
             return;
         }
-        let axes = n.min(SPLIT_AXES);
-        let mut low = [f64::INFINITY; SPLIT_AXES];
-        let mut high = [f64::NEG_INFINITY; SPLIT_AXES];
-        for &i in rows.iter() {
-            for (k, &y) in unordered[i as usize * n..][..axes].iter().enumerate() {
-                low[k] = low[k].min(y);
-                high[k] = high[k].max(y);
-            }
-        }
-        let mut axis = 0;
-        for k in 1..axes {
-            if high[k] - low[k] > high[axis] - low[axis] {
-                axis = k;
-            }
-        }
+        let direction = widest(unordered, rows, n);
         // Full leaves, but for the last.
         let mut half = (count / 2).div_ceil(self.leaf) * self.leaf;
         if half >= count {
             half -= self.leaf;
         }
-        let key = |i: u32| unordered[i as usize * n + axis];
-        rows.select_nth_unstable_by(half, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
+        keyed.clear();
+        keyed.extend(rows.iter().map(|&i| {
+            let lead = &unordered[i as usize * n..][..n.min(SPLIT_AXES)];
+            (lead.iter().zip(&direction).map(|(y, d)| y * d).sum::<f64>(), i)
+        }));
+        keyed.select_nth_unstable_by(half, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (row, key) in rows.iter_mut().zip(&*keyed) {
+            *row = key.1;
+        }
         let (left, right) = rows.split_at_mut(half);
-        self.split(unordered, left, start);
+        self.split(unordered, left, start, keyed);
         self.nodes[at].right = self.nodes.len() as u32;
-        self.split(unordered, right, start + half as u32);
+        self.split(unordered, right, start + half as u32, keyed);
     }
 
     /// Means, scatters and radii, children first.
@@ -184,4 +177,67 @@ impl Tree {
     pub(super) fn place(&self, position: usize) -> &[f64] {
         &self.places[position * self.n..(position + 1) * self.n]
     }
+}
+
+/// The direction that a node is split along: the widest coordinate in R^3 and below, else near
+/// the leading principal direction, because sheets that lie askew to all coordinates would be
+/// cut into slivers.
+fn widest(unordered: &[f64], rows: &[u32], n: usize) -> [f64; SPLIT_AXES] {
+    let axes = n.min(SPLIT_AXES);
+    let lead = |i: &u32| &unordered[*i as usize * n..][..axes];
+    let mut low = [f64::INFINITY; SPLIT_AXES];
+    let mut high = [f64::NEG_INFINITY; SPLIT_AXES];
+    for i in rows {
+        for (k, &y) in lead(i).iter().enumerate() {
+            low[k] = low[k].min(y);
+            high[k] = high[k].max(y);
+        }
+    }
+    let mut axis = 0;
+    for k in 1..axes {
+        if high[k] - low[k] > high[axis] - low[axis] {
+            axis = k;
+        }
+    }
+    let mut direction = [0.0; SPLIT_AXES];
+    direction[axis] = 1.0;
+    let extent = high[axis] - low[axis];
+    if axes <= 3 || extent <= 0.0 {
+        return direction;
+    }
+    // A few points show the direction; a few rounds from the widest coordinate find it.
+    let mut products = [[0.0; SPLIT_AXES]; SPLIT_AXES];
+    let mut middle = [0.0; SPLIT_AXES];
+    let shown = || rows.iter().step_by((rows.len() / 64).max(1));
+    let share = 1.0 / shown().count() as f64;
+    for i in shown() {
+        for (m, y) in middle.iter_mut().zip(lead(i)) {
+            *m += share * y;
+        }
+    }
+    for i in shown() {
+        let mut from = [0.0; SPLIT_AXES];
+        for ((f, y), m) in from.iter_mut().zip(lead(i)).zip(&middle) {
+            *f = (y - m) / extent;
+        }
+        for (row, x) in products.iter_mut().zip(&from) {
+            for (p, y) in row.iter_mut().zip(&from) {
+                *p += x * y;
+            }
+        }
+    }
+    for _ in 0..6 {
+        let mut image = [0.0; SPLIT_AXES];
+        for (row, x) in products.iter().zip(&direction) {
+            for (o, p) in image.iter_mut().zip(row) {
+                *o += p * x;
+            }
+        }
+        let length = image.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(length > 0.0) {
+            break;
+        }
+        direction = image.map(|x| x / length);
+    }
+    direction
 }
