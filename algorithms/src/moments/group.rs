@@ -16,7 +16,7 @@ use crate::principal::PrincipalFrame;
 use crosscap_core::Scalar;
 
 /// Most centers of a group.
-const MOST_CENTERS: usize = 32;
+const MOST_CENTERS: usize = 64;
 /// Largest radius of a group, in units of the radius of the balls.
 const WIDEST: f64 = 0.5;
 /// A leaf is counted from its outsiders where this share of it is inside.
@@ -39,12 +39,11 @@ pub(super) struct Group {
 pub(super) fn groups<S: Scalar>(reach: &Reach<'_, S>) -> Vec<Group> {
     let tree = reach.tree;
     let mut groups = Vec::new();
-    let most = std::env::var("MC").map_or(MOST_CENTERS, |x| x.parse().unwrap()); // DBG
     let mut at = 0;
     // Preorder: a node that becomes a group is followed by what comes after its subtree.
     while at < tree.nodes.len() {
         let node = &tree.nodes[at];
-        if node.radius <= WIDEST * reach.unit && node.count() <= most {
+        if node.radius <= WIDEST * reach.unit && node.count() <= MOST_CENTERS {
             groups.push(Group { start: node.start, end: node.end, node: Some(at as u32) });
             let end = node.end;
             while at < tree.nodes.len() && tree.nodes[at].start < end {

@@ -275,7 +275,7 @@ fn dimensions_of<S: Scalar, const L: usize, const M: usize>(
 ) -> Vec<LocalDimension> {
     let mut out = Vec::new();
     #[cfg(target_arch = "x86_64")]
-    if std::is_x86_feature_detected!("avx2") && std::env::var("PLAIN").is_err() {
+    if std::is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has what the function was compiled for.
         #[allow(unsafe_code)]
         unsafe {
