@@ -16,7 +16,11 @@ pub(super) fn small(c: &[f64], n: usize, dt: f64) -> u32 {
         1 => 1,
         2 => {
             let most = (1.0 - dt) * (c[0] + c[2]);
-            if semidefinite([most - c[0], -c[1], 0.0, most - c[2], 0.0, 0.0]) { 2 } else { 1 }
+            if semidefinite([most - c[0], -c[1], 0.0, most - c[2], 0.0, 0.0]) {
+                2
+            } else {
+                1
+            }
         }
         _ => {
             let trace = c[0] + c[3] + c[5];
@@ -102,7 +106,11 @@ mod tests {
     use proptest::prelude::*;
 
     fn naive(full: &DMatrix<f64>, dt: f64) -> (u32, bool) {
-        let mut values: Vec<f64> = SymmetricEigen::new(full.clone()).eigenvalues.iter().copied().collect();
+        let mut values: Vec<f64> = SymmetricEigen::new(full.clone())
+            .eigenvalues
+            .iter()
+            .copied()
+            .collect();
         values.sort_by(|a, b| b.total_cmp(a));
         let total: f64 = values.iter().sum();
         let mut tail = total;
@@ -110,7 +118,9 @@ mod tests {
             tail -= v;
             (tail / total - dt).abs() < 1e-9
         });
-        let found = PrincipalComponents::<f64>::new(dt).unwrap().dimension_of(&values);
+        let found = PrincipalComponents::<f64>::new(dt)
+            .unwrap()
+            .dimension_of(&values);
         (found.0 as u32, near)
     }
 

@@ -54,7 +54,11 @@ impl Directions {
     fn multiply(&mut self, dense: &[f64], n: usize) {
         self.image.clear();
         self.image.resize(self.rows.len(), 0.0);
-        for (v, out) in self.rows.chunks_exact(n).zip(self.image.chunks_exact_mut(n)) {
+        for (v, out) in self
+            .rows
+            .chunks_exact(n)
+            .zip(self.image.chunks_exact_mut(n))
+        {
             for (row, x) in dense.chunks_exact(n).zip(v) {
                 for (o, a) in out.iter_mut().zip(row) {
                     *o += a * x;
@@ -105,7 +109,11 @@ impl Directions {
             if i >= m || j >= m {
                 return 0.0;
             }
-            rows[i * n..(i + 1) * n].iter().zip(&image[j * n..]).map(|(a, b)| a * b).sum()
+            rows[i * n..(i + 1) * n]
+                .iter()
+                .zip(&image[j * n..])
+                .map(|(a, b)| a * b)
+                .sum()
         });
         let eigen = SymmetricEigen::new(0.5 * (ritz + ritz.transpose()));
         let mut order: Vec<usize> = (0..LEADING).collect();
@@ -119,7 +127,11 @@ impl Directions {
         self.image.clear();
         for &k in &order {
             for x in 0..n {
-                self.image.push((0..m).map(|i| eigen.eigenvectors[(i, k)] * self.rows[i * n + x]).sum());
+                self.image.push(
+                    (0..m)
+                        .map(|i| eigen.eigenvectors[(i, k)] * self.rows[i * n + x])
+                        .sum(),
+                );
             }
         }
         std::mem::swap(&mut self.image, &mut self.rows);
@@ -144,7 +156,13 @@ mod tests {
                 for i in 0..n {
                     dense[i * n + i] = match kind {
                         0 => 0.0,
-                        1 => if i == n - 1 { 1.0 } else { 0.0 },
+                        1 => {
+                            if i == n - 1 {
+                                1.0
+                            } else {
+                                0.0
+                            }
+                        }
                         _ => 0.3_f64.powi(((i * 7) % n) as i32),
                     };
                 }
@@ -153,11 +171,18 @@ mod tests {
                     directions.follow(&dense, m, n);
                     for i in 0..m {
                         for j in 0..m {
-                            let product: f64 = (0..n).map(|k| directions.rows[i * n + k] * directions.rows[j * n + k]).sum();
-                            assert!((product - f64::from(u8::from(i == j))).abs() < 1e-14, "{n} {kind} {i} {j} {product}");
+                            let product: f64 = (0..n)
+                                .map(|k| directions.rows[i * n + k] * directions.rows[j * n + k])
+                                .sum();
+                            assert!(
+                                (product - f64::from(u8::from(i == j))).abs() < 1e-14,
+                                "{n} {kind} {i} {j} {product}"
+                            );
                         }
                     }
-                    let along: f64 = (0..n).map(|k| dense[k * n + k] * directions.rows[k].powi(2)).sum();
+                    let along: f64 = (0..n)
+                        .map(|k| dense[k * n + k] * directions.rows[k].powi(2))
+                        .sum();
                     let largest = (0..n).map(|k| dense[k * n + k]).fold(0.0, f64::max);
                     assert!(along > 0.99 * largest || kind == 0, "{n} {kind} {along}");
                 }

@@ -44,7 +44,11 @@ pub(super) fn groups<S: Scalar>(reach: &Reach<'_, S>) -> Vec<Group> {
     while at < tree.nodes.len() {
         let node = &tree.nodes[at];
         if node.radius <= WIDEST * reach.unit && node.count() <= MOST_CENTERS {
-            groups.push(Group { start: node.start, end: node.end, node: Some(at as u32) });
+            groups.push(Group {
+                start: node.start,
+                end: node.end,
+                node: Some(at as u32),
+            });
             let end = node.end;
             while at < tree.nodes.len() && tree.nodes[at].start < end {
                 at += 1;
@@ -52,7 +56,11 @@ pub(super) fn groups<S: Scalar>(reach: &Reach<'_, S>) -> Vec<Group> {
             continue;
         }
         if node.is_leaf() {
-            groups.extend((node.start..node.end).map(|p| Group { start: p, end: p + 1, node: None }));
+            groups.extend((node.start..node.end).map(|p| Group {
+                start: p,
+                end: p + 1,
+                node: None,
+            }));
         }
         at += 1;
     }
@@ -207,7 +215,11 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
     }
 
     /// Moments of every ball of the group in all coordinates.
-    pub(super) fn balls(&mut self, group: Group, each: &mut dyn FnMut(usize, Result<Ball<'_>, &[usize]>)) {
+    pub(super) fn balls(
+        &mut self,
+        group: Group,
+        each: &mut dyn FnMut(usize, Result<Ball<'_>, &[usize]>),
+    ) {
         self.prepare(group);
         for position in group.start as usize..group.end as usize {
             self.part(position);
@@ -290,11 +302,19 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
                 continue;
             }
             let mean = tree.mean(at as usize);
-            for ((o, s), (a, b)) in (self.offset.iter_mut().zip(&mut self.common_sum)).zip(mean.iter().zip(&self.center)) {
+            for ((o, s), (a, b)) in (self.offset.iter_mut().zip(&mut self.common_sum))
+                .zip(mean.iter().zip(&self.center))
+            {
                 *o = a - b;
                 *s += count as f64 * *o;
             }
-            packed::add_shifted(&mut self.common_products, tree.scatter(at as usize), &self.offset, count as f64, 1.0);
+            packed::add_shifted(
+                &mut self.common_products,
+                tree.scatter(at as usize),
+                &self.offset,
+                count as f64,
+                1.0,
+            );
         }
     }
 
@@ -314,11 +334,19 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
             for &at in &self.fringe {
                 let own = tree.nodes[at as usize].count() as f64;
                 let mean = tree.mean(at as usize);
-                for ((o, s), (a, b)) in (self.offset.iter_mut().zip(&mut self.full_sum)).zip(mean.iter().zip(&self.center)) {
+                for ((o, s), (a, b)) in (self.offset.iter_mut().zip(&mut self.full_sum))
+                    .zip(mean.iter().zip(&self.center))
+                {
                     *o = a - b;
                     *s += own * *o;
                 }
-                packed::add_shifted(&mut self.full_products, tree.scatter(at as usize), &self.offset, own, 1.0);
+                packed::add_shifted(
+                    &mut self.full_products,
+                    tree.scatter(at as usize),
+                    &self.offset,
+                    own,
+                    1.0,
+                );
                 count += own;
             }
         }
@@ -369,9 +397,11 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
         let tests = M + usize::from(self.rest);
         self.lanes.clear();
         self.lanes.resize(units * tests, [FAR; L]);
-        // A slot without a point is never read, a unit is written as a whole.
-        self.features.resize(self.features.len().max(units * L * width), 0.0);
-        self.unit_features.resize(self.unit_features.len().max(units * width), 0.0);
+        // Units are written as a whole, so nothing old is read; one more keeps all offsets valid.
+        self.features
+            .resize(self.features.len().max((units + 1) * L * width), 0.0);
+        self.unit_features
+            .resize(self.unit_features.len().max((units + 1) * width), 0.0);
         self.middles.resize(self.middles.len().max(units * M), 0.0);
         self.radii.clear();
         self.rests.clear();
@@ -409,7 +439,11 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
             }
             let mut farthest = 0.0_f64;
             for place in &places[..count] {
-                let square: f64 = place.iter().zip(&middle).map(|(a, b)| (a - b) * (a - b)).sum();
+                let square: f64 = place
+                    .iter()
+                    .zip(&middle)
+                    .map(|(a, b)| (a - b) * (a - b))
+                    .sum();
                 farthest = farthest.max(square);
             }
             for (k, x) in middle.iter().enumerate() {
@@ -451,8 +485,12 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
                 self.common_features[first + j - i] = product;
             }
             first += M - i;
-            self.common_features[length + i] =
-                v.iter().zip(&self.common_sum).map(|(a, b)| a * b).sum::<f64>() * inverse;
+            self.common_features[length + i] = v
+                .iter()
+                .zip(&self.common_sum)
+                .map(|(a, b)| a * b)
+                .sum::<f64>()
+                * inverse;
         }
         if self.rest {
             let whole = packed::trace(&self.common_products, n) * square;
@@ -471,8 +509,11 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
         let beside = self.beside as f32;
         let shell = self.shell as f32;
         // Where the shell is everything: NaN refuses every comparison.
-        let (near_limit, far_limit) =
-            if shell < 0.1 { (1.0 - 2.0 * shell, 1.0 + 4.0 * shell) } else { (f32::NAN, f32::INFINITY) };
+        let (near_limit, far_limit) = if shell < 0.1 {
+            (1.0 - 2.0 * shell, 1.0 + 4.0 * shell)
+        } else {
+            (f32::NAN, f32::INFINITY)
+        };
 
         self.gaps.fill(0.0);
         for (q, middles) in query.iter().zip(self.middles.chunks_exact(units.max(1))) {
@@ -533,7 +574,14 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
             let mut limit = near_limit;
             if within != reached {
                 limit = 0.5;
-                within = settle(self.reach, position, node.start as usize, &low[..own], &mut high, [near_limit, far_limit]);
+                within = settle(
+                    self.reach,
+                    position,
+                    node.start as usize,
+                    &low[..own],
+                    &mut high,
+                    [near_limit, far_limit],
+                );
             }
             count += within;
             let first = unit * L as u32;
@@ -565,7 +613,11 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
         }
         let mut sum = std::mem::take(&mut self.sum);
         sum.clone_from(&self.common_features);
-        if M <= 3 { self.add_features::<10>(&mut sum) } else { self.add_features::<14>(&mut sum) }
+        if M <= 3 {
+            self.add_features::<10>(&mut sum)
+        } else {
+            self.add_features::<14>(&mut sum)
+        }
         self.sum = sum;
         let length = packed::length(M);
         let share = 1.0 / f64::from(self.parts.count);
@@ -585,7 +637,11 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
         if let Some(dimension) = decide::compressed(products, M, rest, dt) {
             return dimension;
         }
-        if self.full() { self.spectrum(dt) } else { self.naive(dt) }
+        if self.full() {
+            self.spectrum(dt)
+        } else {
+            self.naive(dt)
+        }
     }
 
     /// Whether the covariance is not lost in the moments (both in units of the radius).
@@ -601,7 +657,12 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
         for at in (0..width).step_by(W) {
             let mut own = [0.0; W];
             own.copy_from_slice(&sum[at..at + W]);
-            add_rows::<W, true>(&mut own, &self.unit_features[at..], width, &self.parts.inside);
+            add_rows::<W, true>(
+                &mut own,
+                &self.unit_features[at..],
+                width,
+                &self.parts.inside,
+            );
             add_rows::<W, true>(&mut own, &self.unit_features[at..], width, &self.parts.most);
             add_rows::<W, true>(&mut own, &self.features[at..], width, self.parts.plus());
             add_rows::<W, false>(&mut own, &self.features[at..], width, self.parts.minus());
@@ -623,7 +684,9 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
         for &unit in parts.inside.iter().chain(&parts.most) {
             let at = self.fringe[unit as usize] as usize;
             let count = tree.nodes[at].count() as f64;
-            for ((o, s), (a, b)) in (self.offset.iter_mut().zip(&mut sum)).zip(tree.mean(at).iter().zip(&self.center)) {
+            for ((o, s), (a, b)) in
+                (self.offset.iter_mut().zip(&mut sum)).zip(tree.mean(at).iter().zip(&self.center))
+            {
                 *o = a - b;
                 *s += count * *o;
             }
@@ -636,7 +699,9 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
                 if position >= node.end as usize {
                     continue;
                 }
-                for ((o, s), (a, b)) in (self.offset.iter_mut().zip(&mut sum)).zip(tree.place(position).iter().zip(&self.center)) {
+                for ((o, s), (a, b)) in (self.offset.iter_mut().zip(&mut sum))
+                    .zip(tree.place(position).iter().zip(&self.center))
+                {
                     *o = a - b;
                     *s += sign * *o;
                 }
@@ -659,7 +724,8 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
     fn spectrum(&mut self, dt: f64) -> u32 {
         let n = self.n;
         packed::unfold(&self.full_products, n, &mut self.dense);
-        let mut values = nalgebra::DMatrix::from_row_slice(n, n, &self.dense).symmetric_eigenvalues();
+        let mut values =
+            nalgebra::DMatrix::from_row_slice(n, n, &self.dense).symmetric_eigenvalues();
         values.as_mut_slice().sort_by(|a, b| b.total_cmp(a));
         super::dimension_of(values.as_slice(), dt)
     }
@@ -669,7 +735,11 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
         let tree = self.reach.tree;
         self.rows.clear();
         let mut add = |start: u32, end: u32| {
-            self.rows.extend(tree.order[start as usize..end as usize].iter().map(|&i| i as usize));
+            self.rows.extend(
+                tree.order[start as usize..end as usize]
+                    .iter()
+                    .map(|&i| i as usize),
+            );
         };
         for &at in &self.common {
             add(tree.nodes[at as usize].start, tree.nodes[at as usize].end);
@@ -679,13 +749,18 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
             add(node.start, node.end);
         }
         for &slot in self.parts.plus() {
-            let position = tree.nodes[self.fringe[slot as usize / L] as usize].start + slot % L as u32;
+            let position =
+                tree.nodes[self.fringe[slot as usize / L] as usize].start + slot % L as u32;
             add(position, position + 1);
         }
         for &unit in &self.parts.most {
             let node = &tree.nodes[self.fringe[unit as usize] as usize];
             for position in node.start..node.end {
-                if !self.parts.minus().contains(&(unit * L as u32 + position - node.start)) {
+                if !self
+                    .parts
+                    .minus()
+                    .contains(&(unit * L as u32 + position - node.start))
+                {
                     add(position, position + 1);
                 }
             }
@@ -732,7 +807,12 @@ fn squared_gap(a: &[f64], b: &[f64]) -> f64 {
             lanes[k] += (x[k] - y[k]) * (x[k] - y[k]);
         }
     }
-    let rest: f64 = p.remainder().iter().zip(q.remainder()).map(|(x, y)| (x - y) * (x - y)).sum();
+    let rest: f64 = p
+        .remainder()
+        .iter()
+        .zip(q.remainder())
+        .map(|(x, y)| (x - y) * (x - y))
+        .sum();
     (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + rest
 }
 
@@ -771,7 +851,12 @@ fn write_features<const M: usize>(place: &[f64; M], beside: f64, out: &mut [f64]
 
 /// Adds or subtracts the rows in the list.
 #[inline(always)]
-fn add_rows<const W: usize, const ADD: bool>(sum: &mut [f64; W], rows: &[f64], width: usize, list: &[u32]) {
+fn add_rows<const W: usize, const ADD: bool>(
+    sum: &mut [f64; W],
+    rows: &[f64],
+    width: usize,
+    list: &[u32],
+) {
     for &r in list {
         if let Some(row) = rows[r as usize * width..].first_chunk::<W>() {
             for (s, x) in sum.iter_mut().zip(row) {

@@ -110,8 +110,16 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
                 expected: format!("at most {} points", u32::MAX),
             });
         }
-        let limit = if S::of(1e100).is_finite() { LARGEST_WIDE } else { LARGEST_NARROW };
-        if let Some(at) = cloud.coordinates().iter().position(|c| c.as_f64().abs() > limit) {
+        let limit = if S::of(1e100).is_finite() {
+            LARGEST_WIDE
+        } else {
+            LARGEST_NARROW
+        };
+        if let Some(at) = cloud
+            .coordinates()
+            .iter()
+            .position(|c| c.as_f64().abs() > limit)
+        {
             let (row, column) = (at / cloud.dimension(), at % cloud.dimension());
             return Err(Error::Parameter {
                 name: "coordinates",
@@ -119,7 +127,10 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
                 expected: format!("magnitudes up to {limit:e} (rescale the data)"),
             });
         }
-        Ok(Self { cloud, tree: Tree::new(cloud) })
+        Ok(Self {
+            cloud,
+            tree: Tree::new(cloud),
+        })
     }
 
     /// Count and dimension of the ball of radius `eps` (strict, unit of the data) about every
@@ -127,13 +138,22 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
     ///
     /// # Errors
     /// [`Error::Parameter`] when `eps` is not between 1e-140 and 1e140 or vanishes in `S`, or unless `0 < dt < 1`.
-    pub fn dimensions(&self, eps: f64, dt: f64, execute: &dyn Execute) -> Result<Vec<LocalDimension>, Error> {
+    pub fn dimensions(
+        &self,
+        eps: f64,
+        dt: f64,
+        execute: &dyn Execute,
+    ) -> Result<Vec<LocalDimension>, Error> {
         PrincipalComponents::<f64>::new(dt)?;
         let reach = Reach::new(&self.tree, self.cloud, eps)?;
         let found = if self.tree.n <= 3 {
-            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 8, 3>, g| dimensions_of(sweep, g, dt))
+            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 8, 3>, g| {
+                dimensions_of(sweep, g, dt)
+            })
         } else {
-            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 16, 6>, g| dimensions_of(sweep, g, dt))
+            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 16, 6>, g| {
+                dimensions_of(sweep, g, dt)
+            })
         };
         let mut dimensions = vec![LocalDimension::default(); self.cloud.len()];
         for (&row, found) in self.tree.order.iter().zip(found.into_iter().flatten()) {
@@ -156,9 +176,13 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
     ) -> Result<(), Error> {
         let reach = Reach::new(&self.tree, self.cloud, eps)?;
         if self.tree.n <= 3 {
-            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 8, 3>, g| self.hand_out(&reach, sweep, g, each));
+            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 8, 3>, g| {
+                self.hand_out(&reach, sweep, g, each)
+            });
         } else {
-            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 16, 6>, g| self.hand_out(&reach, sweep, g, each));
+            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 16, 6>, g| {
+                self.hand_out(&reach, sweep, g, each)
+            });
         }
         Ok(())
     }
@@ -204,7 +228,12 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
         let placement = &self.tree.placement;
         out.count = ball.count;
         out.mean.resize(ambient, 0.0);
-        let middle: Vec<f64> = ball.center.iter().zip(ball.mean).map(|(c, m)| c + m * unit).collect();
+        let middle: Vec<f64> = ball
+            .center
+            .iter()
+            .zip(ball.mean)
+            .map(|(c, m)| c + m * unit)
+            .collect();
         placement.lift(&middle, &mut out.mean);
         for (m, c) in out.mean.iter_mut().zip(&placement.center) {
             *m += c;

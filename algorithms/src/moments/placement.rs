@@ -37,10 +37,18 @@ impl Placement {
         let largest = (cloud.iter())
             .flat_map(|row| row.iter().zip(&center).map(|(x, c)| (x.as_f64() - c).abs()))
             .fold(0.0, f64::max);
-        let scale = if largest > 0.0 { (-largest.log2().ceil().clamp(-990.0, 990.0)).exp2() } else { 1.0 };
+        let scale = if largest > 0.0 {
+            (-largest.log2().ceil().clamp(-990.0, 990.0)).exp2()
+        } else {
+            1.0
+        };
         let mut places = Vec::with_capacity(cloud.coordinates().len());
         for row in cloud.iter() {
-            places.extend(row.iter().zip(&center).map(|(x, c)| (x.as_f64() - c) * scale));
+            places.extend(
+                row.iter()
+                    .zip(&center)
+                    .map(|(x, c)| (x.as_f64() - c) * scale),
+            );
         }
         let mut placement = Self {
             ambient,
@@ -62,8 +70,11 @@ impl Placement {
     /// Puts the coordinates of largest variance first.
     fn permute(&mut self, places: &mut [f64]) {
         let covariance = self.sample(places);
-        let spread: Vec<f64> = (0..self.n).map(|k| covariance.column(k).norm_squared()).collect();
-        self.permutation.sort_by(|&a, &b| spread[b].total_cmp(&spread[a]).then(a.cmp(&b)));
+        let spread: Vec<f64> = (0..self.n)
+            .map(|k| covariance.column(k).norm_squared())
+            .collect();
+        self.permutation
+            .sort_by(|&a, &b| spread[b].total_cmp(&spread[a]).then(a.cmp(&b)));
         let mut row = vec![0.0; self.n];
         for place in places.chunks_exact_mut(self.n) {
             row.copy_from_slice(place);
@@ -94,10 +105,17 @@ impl Placement {
             }
         }
         let rounding = 16.0 * n as f64 * f64::EPSILON;
-        let kept = largest.iter().rposition(|&l| l > rounding).map_or(1, |k| k + 1);
+        let kept = largest
+            .iter()
+            .rposition(|&l| l > rounding)
+            .map_or(1, |k| k + 1);
         self.dropped = largest[kept..].iter().map(|l| l * l).sum::<f64>().sqrt();
         if kept < n {
-            let narrow = turned.chunks_exact(n).flat_map(|row| &row[..kept]).copied().collect();
+            let narrow = turned
+                .chunks_exact(n)
+                .flat_map(|row| &row[..kept])
+                .copied()
+                .collect();
             turned = narrow;
             axes.truncate(kept * n);
         }
@@ -148,7 +166,11 @@ fn median<S: Scalar>(cloud: &PointCloud<S>) -> Vec<f64> {
         .map(|k| {
             column.clear();
             column.extend(cloud.iter().map(|row| row[k].as_f64()));
-            if count == 0 { 0.0 } else { *column.select_nth_unstable_by(count / 2, f64::total_cmp).1 }
+            if count == 0 {
+                0.0
+            } else {
+                *column.select_nth_unstable_by(count / 2, f64::total_cmp).1
+            }
         })
         .collect()
 }

@@ -28,7 +28,10 @@ impl<'a, S: Scalar> Reach<'a, S> {
             return Err(Error::Parameter {
                 name: "eps",
                 value: eps.to_string(),
-                expected: format!("a radius between {SMALLEST:e} and {LARGEST:e} that {} can hold", S::NAME),
+                expected: format!(
+                    "a radius between {SMALLEST:e} and {LARGEST:e} that {} can hold",
+                    S::NAME
+                ),
             });
         }
         // The test is monotonic, and so are positive numbers in their bits.
@@ -62,8 +65,13 @@ impl<'a, S: Scalar> Reach<'a, S> {
     /// a few radii of a place of the given norm.
     pub(super) fn noise(&self, norm: f64) -> f64 {
         let ambient = self.tree.placement.ambient as f64;
-        let steps = if self.tree.placement.axes.is_some() { 4.0 * ambient + 16.0 } else { ambient + 4.0 };
-        (steps * f64::EPSILON * (norm + 4.0 * self.unit) + 2.0 * self.tree.placement.dropped) * self.inverse
+        let steps = if self.tree.placement.axes.is_some() {
+            4.0 * ambient + 16.0
+        } else {
+            ambient + 4.0
+        };
+        (steps * f64::EPSILON * (norm + 4.0 * self.unit) + 2.0 * self.tree.placement.dropped)
+            * self.inverse
     }
 
     /// Relative half width of the shell around the sphere in which the original coordinates

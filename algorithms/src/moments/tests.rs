@@ -10,7 +10,9 @@ use std::time::Instant;
 
 /// The rows of a ball, with no shortcut.
 fn scan<S: Scalar>(cloud: &PointCloud<S>, center: usize, eps: f64) -> Vec<usize> {
-    let inside = |&i: &usize| S::of(squared_distance(cloud.point(center), cloud.point(i)).sqrt()) < S::of(eps);
+    let inside = |&i: &usize| {
+        S::of(squared_distance(cloud.point(center), cloud.point(i)).sqrt()) < S::of(eps)
+    };
     (0..cloud.len()).filter(inside).collect()
 }
 
@@ -33,7 +35,10 @@ fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
     assert_eq!(found.len(), cloud.len());
     let n = cloud.dimension();
     let balls = Mutex::new(vec![BallMoments::default(); cloud.len()]);
-    tree.balls(eps, &Serial, &|ball| balls.lock().unwrap()[ball.center] = ball.clone()).unwrap();
+    tree.balls(eps, &Serial, &|ball| {
+        balls.lock().unwrap()[ball.center] = ball.clone()
+    })
+    .unwrap();
     let balls = balls.into_inner().unwrap();
     for i in 0..cloud.len() {
         let rows = scan(cloud, i, eps);
@@ -41,13 +46,24 @@ fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
         assert_eq!(found[i].count as usize, rows.len(), "{at}");
         assert_eq!(balls[i].count as usize, rows.len(), "{at}");
         let (dimension, close) = naive(cloud, &rows, dt);
-        assert!(close || found[i].dimension == dimension || rows.len() == 1, "{at}: {} not {dimension}", found[i].dimension);
+        assert!(
+            close || found[i].dimension == dimension || rows.len() == 1,
+            "{at}: {} not {dimension}",
+            found[i].dimension
+        );
         let mut expected = BallMoments::default();
         expected.sum(cloud, &rows);
         let trace: f64 = (0..n).map(|k| expected.covariance[k * n + k]).sum();
-        let largest = cloud.coordinates().iter().map(|c| c.as_f64().abs()).fold(0.0, f64::max);
+        let largest = cloud
+            .coordinates()
+            .iter()
+            .map(|c| c.as_f64().abs())
+            .fold(0.0, f64::max);
         for (a, b) in balls[i].covariance.iter().zip(&expected.covariance) {
-            assert!((a - b).abs() <= 1e-10 * trace + 1e-28 * largest * largest, "{at}: {a} {b}");
+            assert!(
+                (a - b).abs() <= 1e-10 * trace + 1e-28 * largest * largest,
+                "{at}: {a} {b}"
+            );
         }
         for (a, b) in balls[i].mean.iter().zip(&expected.mean) {
             assert!((a - b).abs() <= 1e-13 * largest.max(eps), "{at}: {a} {b}");
@@ -59,7 +75,9 @@ fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
 fn noise(seed: u64) -> impl Iterator<Item = f64> {
     let mut state = seed;
     std::iter::repeat_with(move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     })
 }
@@ -151,7 +169,10 @@ fn clusters_that_are_tiny_beside_the_radius() {
         let mut random = noise(5);
         let mut rows = Vec::new();
         for i in 0..600 {
-            rows.extend((0..n).map(|k| f64::from(i % 4 * i32::from(k == 0)) + 1e-7 * random.next().unwrap()));
+            rows.extend(
+                (0..n)
+                    .map(|k| f64::from(i % 4 * i32::from(k == 0)) + 1e-7 * random.next().unwrap()),
+            );
         }
         agree(&PointCloud::new(n, rows).unwrap(), 0.5, 0.05);
     }
@@ -171,7 +192,11 @@ fn a_stray_point_far_away() {
 fn more_directions_than_nodes_keep_moments_for() {
     for n in [70, 300] {
         let rows = noise(8).take(n * 120).collect();
-        agree(&PointCloud::new(n, rows).unwrap(), (n as f64 * 0.66).sqrt(), 0.05);
+        agree(
+            &PointCloud::new(n, rows).unwrap(),
+            (n as f64 * 0.66).sqrt(),
+            0.05,
+        );
     }
 }
 
@@ -180,7 +205,13 @@ fn equal_points_alone() {
     for n in [1, 3, 12] {
         let cloud = PointCloud::new(n, vec![7.25; n * 500]).unwrap();
         for found in dimensions(&cloud, 1e-9, 0.05, &Serial).unwrap() {
-            assert_eq!(found, LocalDimension { count: 500, dimension: 0 });
+            assert_eq!(
+                found,
+                LocalDimension {
+                    count: 500,
+                    dimension: 0
+                }
+            );
         }
     }
 }
@@ -190,6 +221,14 @@ fn radii_of_every_magnitude() {
     for scale in [1e-130, 1e-30, 1e30, 1e130] {
         let rows = curved(3, 300, 4).iter().map(|x| x * scale).collect();
         agree(&PointCloud::new(3, rows).unwrap(), 0.5 * scale, 0.05);
+    }
+}
+
+#[test]
+fn balls_that_hold_everything() {
+    for n in [1, 4, 7, 20] {
+        let rows = noise(2).take(n * 90).collect();
+        agree(&PointCloud::new(n, rows).unwrap(), 100.0, 0.05);
     }
 }
 
@@ -208,10 +247,16 @@ fn the_order_of_the_jobs_does_not_matter() {
     let tree = MomentTree::new(&cloud).unwrap();
     let moments = |execute: &dyn Execute| {
         let sum = Mutex::new(vec![0_u64; cloud.len()]);
-        tree.balls(0.1, execute, &|ball| sum.lock().unwrap()[ball.center] = ball.covariance[0].to_bits()).unwrap();
+        tree.balls(0.1, execute, &|ball| {
+            sum.lock().unwrap()[ball.center] = ball.covariance[0].to_bits()
+        })
+        .unwrap();
         sum.into_inner().unwrap()
     };
-    assert_eq!(tree.dimensions(0.1, 0.05, &Serial), tree.dimensions(0.1, 0.05, &Backwards));
+    assert_eq!(
+        tree.dimensions(0.1, 0.05, &Serial),
+        tree.dimensions(0.1, 0.05, &Backwards)
+    );
     assert_eq!(moments(&Serial), moments(&Backwards));
 }
 
@@ -220,14 +265,20 @@ fn refuses_what_has_no_meaning() {
     let cloud = PointCloud::new(2, vec![0.0_f32; 8]).unwrap();
     for eps in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-60, 1e60] {
         let error = dimensions(&cloud, eps, 0.05, &Serial).unwrap_err();
-        assert!(matches!(error, Error::Parameter { name: "eps", .. }), "{eps}: {error}");
+        assert!(
+            matches!(error, Error::Parameter { name: "eps", .. }),
+            "{eps}: {error}"
+        );
     }
     for dt in [0.0, 1.0, f64::NAN] {
         assert!(dimensions(&cloud, 1.0, dt, &Serial).is_err());
     }
     let large = PointCloud::new(2, vec![0.0, 0.0, 1e200, 0.0]).unwrap();
     let error = MomentTree::new(&large).err().unwrap();
-    assert!(error.is_input() && error.to_string().contains("row 1, column 0"), "{error}");
+    assert!(
+        error.is_input() && error.to_string().contains("row 1, column 0"),
+        "{error}"
+    );
     let empty = PointCloud::<f64>::new(3, vec![]).unwrap();
     assert_eq!(dimensions(&empty, 1.0, 0.05, &Serial), Ok(vec![]));
 }
@@ -237,8 +288,15 @@ fn refuses_what_has_no_meaning() {
 #[ignore = "a measurement"]
 fn time_of_the_first_step() {
     let surface = SampleSurface::find("two-spheres").unwrap();
-    measure("two spheres", &surface.sample(&Sampling::new(87_081, 1)).unwrap().points, 0.25);
-    let ring = RingConformations::cyclo_octane().sample(200_000, 1).unwrap().points;
+    measure(
+        "two spheres",
+        &surface.sample(&Sampling::new(87_081, 1)).unwrap().points,
+        0.25,
+    );
+    let ring = RingConformations::cyclo_octane()
+        .sample(200_000, 1)
+        .unwrap()
+        .points;
     // As many neighbors as a fivefold sample has at 0.23.
     measure("cyclo-octane", &ring, 0.46);
 }
@@ -251,7 +309,10 @@ fn measure<S: Scalar>(name: &str, cloud: &PointCloud<S>, eps: f64) {
     let all = start.elapsed().as_secs_f64();
     let mean = found.iter().map(|f| f64::from(f.count)).sum::<f64>() / found.len() as f64;
     let other = found.iter().filter(|f| f.dimension != 2).count();
-    println!("{name}: {} points, {mean:.0} neighbors, {other} not 2-dimensional", found.len());
+    println!(
+        "{name}: {} points, {mean:.0} neighbors, {other} not 2-dimensional",
+        found.len()
+    );
     println!("tree {built:.3} s, all {all:.3} s");
     for i in (0..cloud.len()).step_by(cloud.len() / 200) {
         let rows = scan(cloud, i, eps);

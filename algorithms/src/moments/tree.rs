@@ -67,7 +67,8 @@ impl Tree {
         }
         tree.places.reserve_exact(unordered.len());
         for &i in &order {
-            tree.places.extend_from_slice(&unordered[i as usize * n..(i as usize + 1) * n]);
+            tree.places
+                .extend_from_slice(&unordered[i as usize * n..(i as usize + 1) * n]);
         }
         tree.order = order;
         drop(unordered);
@@ -75,11 +76,22 @@ impl Tree {
         tree
     }
 
-    fn split(&mut self, unordered: &[f64], rows: &mut [u32], start: u32, keyed: &mut Vec<(f64, u32)>) {
+    fn split(
+        &mut self,
+        unordered: &[f64],
+        rows: &mut [u32],
+        start: u32,
+        keyed: &mut Vec<(f64, u32)>,
+    ) {
         let n = self.n;
         let at = self.nodes.len();
         let count = rows.len();
-        self.nodes.push(Node { start, end: start + count as u32, right: 0, radius: 0.0 });
+        self.nodes.push(Node {
+            start,
+            end: start + count as u32,
+            right: 0,
+            radius: 0.0,
+        });
         if count <= self.leaf {
             return;
         }
@@ -92,7 +104,10 @@ impl Tree {
         keyed.clear();
         keyed.extend(rows.iter().map(|&i| {
             let lead = &unordered[i as usize * n..][..n.min(SPLIT_AXES)];
-            (lead.iter().zip(&direction).map(|(y, d)| y * d).sum::<f64>(), i)
+            (
+                lead.iter().zip(&direction).map(|(y, d)| y * d).sum::<f64>(),
+                i,
+            )
         }));
         keyed.select_nth_unstable_by(half, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (row, key) in rows.iter_mut().zip(&*keyed) {
@@ -162,7 +177,11 @@ impl Tree {
 
     /// Numbers that a node keeps of its outer products.
     pub(super) fn scatter_width(&self) -> usize {
-        if self.n <= WIDEST_MOMENTS { packed::length(self.n) } else { 0 }
+        if self.n <= WIDEST_MOMENTS {
+            packed::length(self.n)
+        } else {
+            0
+        }
     }
 
     pub(super) fn mean(&self, node: usize) -> &[f64] {
