@@ -11,6 +11,7 @@ pub mod landmarks;
 #[cfg(any(test, feature = "laws"))]
 pub mod laws;
 pub mod metric;
+pub mod moments;
 pub mod pieces;
 pub mod predicate;
 pub mod principal;

@@ -1,0 +1,333 @@
+//! Moments of all balls of a cloud at once: the first step of the method, fast and exact.
+//!
+//! For every point the ball of radius eps about it (strict), the mean and covariance of what is
+//! in it, and from them the dimension (Martin & Watson 2011, section 2.1). Neighborhoods overlap
+//! nearly everywhere, so that adding up point after point does the same sums hundreds of times.
+//! Here a tree keeps count, mean and scatter of its nodes; centers that lie together share the
+//! sum over the nodes that are inside of all their balls, and only the points near the spheres
+//! are looked at one by one.
+//!
+//! | idea | file |
+//! | --- | --- |
+//! | centering, principal axes, null directions | `placement` |
+//! | the tree and the moments of its nodes | `tree` |
+//! | when a point is inside, to the bit | `reach` |
+//! | all balls about a few centers that lie together | `group` |
+//! | leading directions of such a group | `frame` |
+//! | the dimension from part of the spectrum, with proof | `decide` |
+//!
+//! **What is exact.** Membership: that of `squared_distance(a, b).sqrt()`, rounded to the scalar of
+//! the cloud, `< eps`; a filter in single precision decides where it provably can, the original
+//! coordinates everywhere else. The dimension: that of
+//! [`PrincipalComponents`](crate::dimension::PrincipalComponents), except where a tail share
+//! equals the tolerance within rounding. In more than six dimensions balls are summed
+//! in six directions and the rest is only bounded; where the bound leaves the answer open, the
+//! full spectrum is computed. A covariance that would lose more than 1e-10 of its trace to
+//! cancellation (points that nearly coincide, in a cloud that is wide) is summed again from the
+//! original coordinates.
+//!
+//! The result depends neither on the number of threads nor on the processor.
+
+mod decide;
+mod frame;
+mod group;
+mod packed;
+mod placement;
+mod reach;
+mod tree;
+
+#[cfg(test)]
+mod tests;
+
+use crate::dimension::PrincipalComponents;
+use crate::execute::{self, Execute};
+use crosscap_core::{Error, PointCloud, Scalar};
+use group::{Ball, Group, Sweep};
+use reach::Reach;
+use tree::Tree;
+
+/// Magnitude of coordinates above which squared distances overflow.
+const LARGEST_WIDE: f64 = 1e150;
+const LARGEST_NARROW: f64 = 1e36;
+/// Groups after which a sweep starts afresh, so that threads that start there find the same.
+const RUN: usize = 64;
+
+/// Number of points and dimension of a ball.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LocalDimension {
+    /// Points in the ball, its center among them.
+    pub count: u32,
+    /// Smallest d for which the variances after the d-th are less than the share dt of all; 0 for
+    /// a point that is alone.
+    pub dimension: u32,
+}
+
+/// Moments of the points in a ball.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BallMoments {
+    /// Row of the cloud that is the center.
+    pub center: usize,
+    /// Points in the ball, the center among them.
+    pub count: u32,
+    /// Their mean, N coordinates.
+    pub mean: Vec<f64>,
+    /// Their covariance (sums over the number of points, not that less one), N * N in row order.
+    pub covariance: Vec<f64>,
+}
+
+/// A cloud in a tree that knows the moments of its nodes.
+///
+/// Building takes `O(n log n)` distances, and memory for the coordinates once more and for
+/// about `n / 8` matrices of order r(r + 1)/2, where r is the number of directions that the cloud extends in
+/// (none of these above 64: there every ball is summed from its points).
+///
+/// ```
+/// use crosscap_algorithms::execute::Serial;
+/// use crosscap_algorithms::moments::MomentTree;
+/// use crosscap_core::PointCloud;
+/// // A square lattice in R^3.
+/// let rows = (0..400).flat_map(|k| [f64::from(k % 20), f64::from(k / 20), 7.0]).collect();
+/// let cloud = PointCloud::new(3, rows).unwrap();
+/// let tree = MomentTree::new(&cloud).unwrap();
+/// let found = tree.dimensions(2.0, 0.05, &Serial).unwrap();
+/// assert_eq!((found[210].count, found[210].dimension), (9, 2)); // strict: nobody at distance 2
+/// ```
+pub struct MomentTree<'a, S> {
+    cloud: &'a PointCloud<S>,
+    tree: Tree,
+}
+
+impl<'a, S: Scalar> MomentTree<'a, S> {
+    /// Builds the tree.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] when there are more points than a `u32` can count, [`Error::Parameter`]
+    /// when a coordinate is so large (above 1e36 for `f32`, 1e150 for `f64`) that squared distances overflow.
+    pub fn new(cloud: &'a PointCloud<S>) -> Result<Self, Error> {
+        if u32::try_from(cloud.len()).is_err() {
+            return Err(Error::Shape {
+                found: format!("{} points", cloud.len()),
+                expected: format!("at most {} points", u32::MAX),
+            });
+        }
+        let limit = if S::of(1e100).is_finite() {
+            LARGEST_WIDE
+        } else {
+            LARGEST_NARROW
+        };
+        if let Some(at) = cloud
+            .coordinates()
+            .iter()
+            .position(|c| c.as_f64().abs() > limit)
+        {
+            let (row, column) = (at / cloud.dimension(), at % cloud.dimension());
+            return Err(Error::Parameter {
+                name: "coordinates",
+                value: format!("{} in row {row}, column {column}", cloud.coordinates()[at]),
+                expected: format!("magnitudes up to {limit:e} (rescale the data)"),
+            });
+        }
+        Ok(Self {
+            cloud,
+            tree: Tree::new(cloud),
+        })
+    }
+
+    /// Count and dimension of the ball of radius `eps` (strict, unit of the data) about every
+    /// point, in the order of the cloud, with tolerance `dt` (a share of the variance, strict).
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] when `eps` is not between 1e-140 and 1e140 or vanishes in `S`, or unless `0 < dt < 1`.
+    pub fn dimensions(
+        &self,
+        eps: f64,
+        dt: f64,
+        execute: &dyn Execute,
+    ) -> Result<Vec<LocalDimension>, Error> {
+        PrincipalComponents::<f64>::new(dt)?;
+        let reach = Reach::new(&self.tree, self.cloud, eps)?;
+        let found = if self.tree.n <= 3 {
+            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 8, 3>, g| {
+                dimensions_of(sweep, g, dt)
+            })
+        } else {
+            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 16, 6>, g| {
+                dimensions_of(sweep, g, dt)
+            })
+        };
+        let mut dimensions = vec![LocalDimension::default(); self.cloud.len()];
+        for (&row, found) in self.tree.order.iter().zip(found.into_iter().flatten()) {
+            dimensions[row as usize] = found;
+        }
+        Ok(dimensions)
+    }
+
+    /// Calls `each` with the moments of the ball of radius `eps` (strict, unit of the data) about
+    /// every point, in any order, possibly at the same time. The covariance is accurate to 1e-10
+    /// of its trace. Nothing is kept: neighborhoods and moments of a whole cloud need not fit in memory.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] when `eps` is not between 1e-140 and 1e140 or vanishes in `S`.
+    pub fn balls(
+        &self,
+        eps: f64,
+        execute: &dyn Execute,
+        each: &(dyn Fn(&BallMoments) + Sync),
+    ) -> Result<(), Error> {
+        let reach = Reach::new(&self.tree, self.cloud, eps)?;
+        if self.tree.n <= 3 {
+            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 8, 3>, g| {
+                self.hand_out(&reach, sweep, g, each)
+            });
+        } else {
+            self.sweep(&reach, execute, |sweep: &mut Sweep<'_, S, 16, 6>, g| {
+                self.hand_out(&reach, sweep, g, each)
+            });
+        }
+        Ok(())
+    }
+
+    /// Runs `work` over all groups of centers.
+    fn sweep<'r, T: Send + Sync, const L: usize, const M: usize>(
+        &self,
+        reach: &'r Reach<'r, S>,
+        execute: &dyn Execute,
+        work: impl Fn(&mut Sweep<'r, S, L, M>, Group) -> T + Sync,
+    ) -> Vec<T> {
+        let groups = group::groups(reach);
+        let fresh = || Sweep::new(reach);
+        execute::map(execute, groups.len(), fresh, |sweep, g| {
+            if g.is_multiple_of(RUN) {
+                sweep.forget();
+            }
+            work(sweep, groups[g])
+        })
+    }
+
+    fn hand_out<const L: usize, const M: usize>(
+        &self,
+        reach: &Reach<'_, S>,
+        sweep: &mut Sweep<'_, S, L, M>,
+        group: Group,
+        each: &(dyn Fn(&BallMoments) + Sync),
+    ) {
+        let mut moments = BallMoments::default();
+        sweep.balls(group, &mut |position, ball| {
+            moments.center = self.tree.order[position] as usize;
+            match ball {
+                Ok(ball) => self.lift(reach.unit, &ball, &mut moments),
+                Err(rows) => moments.sum(self.cloud, rows),
+            }
+            each(&moments);
+        });
+    }
+
+    /// From the coordinates of the tree to those of the data.
+    fn lift(&self, unit: f64, ball: &Ball<'_>, out: &mut BallMoments) {
+        let (n, ambient) = (self.tree.n, self.tree.placement.ambient);
+        let placement = &self.tree.placement;
+        out.count = ball.count;
+        out.mean.resize(ambient, 0.0);
+        let middle: Vec<f64> = ball
+            .center
+            .iter()
+            .zip(ball.mean)
+            .map(|(c, m)| c + m * unit)
+            .collect();
+        placement.lift(&middle, &mut out.mean);
+        for (m, c) in out.mean.iter_mut().zip(&placement.center) {
+            *m += c;
+        }
+        let mut dense = Vec::new();
+        packed::unfold(ball.covariance, n, &mut dense);
+        let mut half = vec![0.0; n * ambient];
+        for (row, out) in dense.chunks_exact(n).zip(half.chunks_exact_mut(ambient)) {
+            placement.lift(row, out);
+        }
+        out.covariance.resize(ambient * ambient, 0.0);
+        let mut column = vec![0.0; n];
+        for (k, out) in out.covariance.chunks_exact_mut(ambient).enumerate() {
+            for (c, row) in column.iter_mut().zip(half.chunks_exact(ambient)) {
+                *c = row[k] * (unit * unit);
+            }
+            placement.lift(&column, out);
+        }
+    }
+}
+
+impl BallMoments {
+    /// By definition: the mean, then the products about it.
+    fn sum<S: Scalar>(&mut self, cloud: &PointCloud<S>, rows: &[usize]) {
+        let n = cloud.dimension();
+        let share = 1.0 / rows.len() as f64;
+        self.count = rows.len() as u32;
+        self.mean.clear();
+        self.mean.resize(n, 0.0);
+        for &i in rows {
+            for (m, x) in self.mean.iter_mut().zip(cloud.point(i)) {
+                *m += x.as_f64();
+            }
+        }
+        self.mean.iter_mut().for_each(|m| *m *= share);
+        let mut products = vec![0.0; packed::length(n)];
+        let mut from = vec![0.0; n];
+        for &i in rows {
+            for ((f, x), m) in from.iter_mut().zip(cloud.point(i)).zip(&self.mean) {
+                *f = x.as_f64() - m;
+            }
+            packed::add_square(&mut products, &from, share);
+        }
+        packed::unfold(&products, n, &mut self.covariance);
+    }
+}
+
+/// Number of points and dimension of the ball of radius `eps` about every point of a cloud:
+/// [`MomentTree::new`] and [`MomentTree::dimensions`] in one.
+///
+/// # Errors
+/// Those of the two.
+pub fn dimensions<S: Scalar>(
+    cloud: &PointCloud<S>,
+    eps: f64,
+    dt: f64,
+    execute: &dyn Execute,
+) -> Result<Vec<LocalDimension>, Error> {
+    MomentTree::new(cloud)?.dimensions(eps, dt, execute)
+}
+
+/// One group, with wider registers where the processor has them. No sum changes its order and
+/// no product is fused with a sum, so both paths give the same bits.
+fn dimensions_of<S: Scalar, const L: usize, const M: usize>(
+    sweep: &mut Sweep<'_, S, L, M>,
+    group: Group,
+    dt: f64,
+) -> Vec<LocalDimension> {
+    let mut out = Vec::new();
+    #[cfg(target_arch = "x86_64")]
+    if std::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has what the function was compiled for.
+        #[allow(unsafe_code)]
+        unsafe {
+            dimensions_wide(sweep, group, dt, &mut out);
+        }
+        return out;
+    }
+    sweep.dimensions(group, dt, &mut out);
+    out
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn dimensions_wide<S: Scalar, const L: usize, const M: usize>(
+    sweep: &mut Sweep<'_, S, L, M>,
+    group: Group,
+    dt: f64,
+    out: &mut Vec<LocalDimension>,
+) {
+    sweep.dimensions(group, dt, out);
+}
+
+/// The dimension test on a spectrum, largest variance first.
+fn dimension_of(variances: &[f64], dt: f64) -> u32 {
+    PrincipalComponents::<f64>::new(dt).map_or(0, |test| test.dimension_of(variances).0 as u32)
+}

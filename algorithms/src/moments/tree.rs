@@ -1,0 +1,262 @@
+//! A median-split tree that knows the moments of its nodes.
+
+use super::packed;
+use super::placement::Placement;
+use crosscap_core::{PointCloud, Scalar};
+
+/// Coordinates that nodes are split along.
+const SPLIT_AXES: usize = 8;
+/// With more coordinates the nodes keep no outer products: they would outgrow the cloud.
+pub(super) const WIDEST_MOMENTS: usize = 64;
+
+/// A run of points.
+pub(super) struct Node {
+    pub(super) start: u32,
+    pub(super) end: u32,
+    /// The second child; the first one is the next node. 0 for a leaf.
+    pub(super) right: u32,
+    /// Largest distance of a point from the mean.
+    pub(super) radius: f64,
+}
+
+impl Node {
+    pub(super) fn count(&self) -> usize {
+        (self.end - self.start) as usize
+    }
+
+    pub(super) fn is_leaf(&self) -> bool {
+        self.right == 0
+    }
+}
+
+/// Points in leaf order, and nodes with mean, scatter and radius.
+pub(super) struct Tree {
+    pub(super) placement: Placement,
+    /// Coordinates of a point.
+    pub(super) n: usize,
+    /// Row of the cloud at every position.
+    pub(super) order: Vec<u32>,
+    /// Places in leaf order, `n` each.
+    pub(super) places: Vec<f64>,
+    pub(super) nodes: Vec<Node>,
+    /// Mean of every node, `n` each.
+    pub(super) means: Vec<f64>,
+    /// Sum of outer products about the mean of every node, packed; empty for wide clouds.
+    pub(super) scatters: Vec<f64>,
+    /// Most points of a leaf.
+    pub(super) leaf: usize,
+}
+
+impl Tree {
+    pub(super) fn new<S: Scalar>(cloud: &PointCloud<S>) -> Self {
+        let (placement, unordered) = Placement::of(cloud);
+        let n = placement.n;
+        let mut order: Vec<u32> = (0..cloud.len() as u32).collect();
+        let mut tree = Self {
+            placement,
+            n,
+            order: Vec::new(),
+            places: Vec::new(),
+            nodes: Vec::new(),
+            means: Vec::new(),
+            scatters: Vec::new(),
+            leaf: if n <= 3 { 8 } else { 16 },
+        };
+        if !order.is_empty() {
+            tree.split(&unordered, &mut order, 0, &mut Vec::new());
+        }
+        tree.places.reserve_exact(unordered.len());
+        for &i in &order {
+            tree.places
+                .extend_from_slice(&unordered[i as usize * n..(i as usize + 1) * n]);
+        }
+        tree.order = order;
+        drop(unordered);
+        tree.measure();
+        tree
+    }
+
+    fn split(
+        &mut self,
+        unordered: &[f64],
+        rows: &mut [u32],
+        start: u32,
+        keyed: &mut Vec<(f64, u32)>,
+    ) {
+        let n = self.n;
+        let at = self.nodes.len();
+        let count = rows.len();
+        self.nodes.push(Node {
+            start,
+            end: start + count as u32,
+            right: 0,
+            radius: 0.0,
+        });
+        if count <= self.leaf {
+            return;
+        }
+        let direction = widest(unordered, rows, n);
+        // Full leaves, but for the last.
+        let mut half = (count / 2).div_ceil(self.leaf) * self.leaf;
+        if half >= count {
+            half -= self.leaf;
+        }
+        keyed.clear();
+        keyed.extend(rows.iter().map(|&i| {
+            let lead = &unordered[i as usize * n..][..n.min(SPLIT_AXES)];
+            (
+                lead.iter().zip(&direction).map(|(y, d)| y * d).sum::<f64>(),
+                i,
+            )
+        }));
+        keyed.select_nth_unstable_by(half, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (row, key) in rows.iter_mut().zip(&*keyed) {
+            *row = key.1;
+        }
+        let (left, right) = rows.split_at_mut(half);
+        self.split(unordered, left, start, keyed);
+        self.nodes[at].right = self.nodes.len() as u32;
+        self.split(unordered, right, start + half as u32, keyed);
+    }
+
+    /// Means, scatters and radii, children first.
+    fn measure(&mut self) {
+        let n = self.n;
+        let width = self.scatter_width();
+        self.means = vec![0.0; self.nodes.len() * n];
+        self.scatters = vec![0.0; self.nodes.len() * width];
+        let mut offset = vec![0.0; n];
+        for at in (0..self.nodes.len()).rev() {
+            let node = &self.nodes[at];
+            let places = &self.places[node.start as usize * n..node.end as usize * n];
+            let (before, after) = self.means.split_at_mut((at + 1) * n);
+            let mean = &mut before[at * n..];
+            let (_, scatters_from) = self.scatters.split_at_mut(at * width);
+            let (scatter, scatters_after) = scatters_from.split_at_mut(width);
+            if node.is_leaf() {
+                for place in places.chunks_exact(n) {
+                    for (m, y) in mean.iter_mut().zip(place) {
+                        *m += y;
+                    }
+                }
+                mean.iter_mut().for_each(|m| *m /= node.count() as f64);
+            } else {
+                for child in [at + 1, node.right as usize] {
+                    let share = self.nodes[child].count() as f64 / node.count() as f64;
+                    for (m, c) in mean.iter_mut().zip(&after[(child - at - 1) * n..]) {
+                        *m += share * c;
+                    }
+                }
+                for child in [at + 1, node.right as usize] {
+                    if width > 0 {
+                        let child_mean = &after[(child - at - 1) * n..(child - at) * n];
+                        for ((o, c), m) in offset.iter_mut().zip(child_mean).zip(&*mean) {
+                            *o = c - m;
+                        }
+                        let from = &scatters_after[(child - at - 1) * width..][..width];
+                        let count = self.nodes[child].count() as f64;
+                        packed::add_shifted(scatter, from, &offset, count, 1.0);
+                    }
+                }
+            }
+            let mut farthest = 0.0_f64;
+            for place in places.chunks_exact(n) {
+                let mut square = 0.0;
+                for ((o, y), m) in offset.iter_mut().zip(place).zip(&*mean) {
+                    *o = y - m;
+                    square += *o * *o;
+                }
+                farthest = farthest.max(square);
+                if node.is_leaf() && width > 0 {
+                    packed::add_square(scatter, &offset, 1.0);
+                }
+            }
+            self.nodes[at].radius = farthest.sqrt();
+        }
+    }
+
+    /// Numbers that a node keeps of its outer products.
+    pub(super) fn scatter_width(&self) -> usize {
+        if self.n <= WIDEST_MOMENTS {
+            packed::length(self.n)
+        } else {
+            0
+        }
+    }
+
+    pub(super) fn mean(&self, node: usize) -> &[f64] {
+        &self.means[node * self.n..(node + 1) * self.n]
+    }
+
+    pub(super) fn scatter(&self, node: usize) -> &[f64] {
+        let width = self.scatter_width();
+        &self.scatters[node * width..(node + 1) * width]
+    }
+
+    pub(super) fn place(&self, position: usize) -> &[f64] {
+        &self.places[position * self.n..(position + 1) * self.n]
+    }
+}
+
+/// The direction that a node is split along: the widest coordinate in R^3 and below, else near
+/// the leading principal direction, because sheets that lie askew to all coordinates would be
+/// cut into slivers.
+fn widest(unordered: &[f64], rows: &[u32], n: usize) -> [f64; SPLIT_AXES] {
+    let axes = n.min(SPLIT_AXES);
+    let lead = |i: &u32| &unordered[*i as usize * n..][..axes];
+    let mut low = [f64::INFINITY; SPLIT_AXES];
+    let mut high = [f64::NEG_INFINITY; SPLIT_AXES];
+    for i in rows {
+        for (k, &y) in lead(i).iter().enumerate() {
+            low[k] = low[k].min(y);
+            high[k] = high[k].max(y);
+        }
+    }
+    let mut axis = 0;
+    for k in 1..axes {
+        if high[k] - low[k] > high[axis] - low[axis] {
+            axis = k;
+        }
+    }
+    let mut direction = [0.0; SPLIT_AXES];
+    direction[axis] = 1.0;
+    let extent = high[axis] - low[axis];
+    if axes <= 3 || extent <= 0.0 {
+        return direction;
+    }
+    // A few points show the direction; a few rounds from the widest coordinate find it.
+    let mut products = [[0.0; SPLIT_AXES]; SPLIT_AXES];
+    let mut middle = [0.0; SPLIT_AXES];
+    let shown = || rows.iter().step_by((rows.len() / 64).max(1));
+    let share = 1.0 / shown().count() as f64;
+    for i in shown() {
+        for (m, y) in middle.iter_mut().zip(lead(i)) {
+            *m += share * y;
+        }
+    }
+    for i in shown() {
+        let mut from = [0.0; SPLIT_AXES];
+        for ((f, y), m) in from.iter_mut().zip(lead(i)).zip(&middle) {
+            *f = (y - m) / extent;
+        }
+        for (row, x) in products.iter_mut().zip(&from) {
+            for (p, y) in row.iter_mut().zip(&from) {
+                *p += x * y;
+            }
+        }
+    }
+    for _ in 0..6 {
+        let mut image = [0.0; SPLIT_AXES];
+        for (row, x) in products.iter().zip(&direction) {
+            for (o, p) in image.iter_mut().zip(row) {
+                *o += p * x;
+            }
+        }
+        let length = image.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(length > 0.0) {
+            break;
+        }
+        direction = image.map(|x| x / length);
+    }
+    direction
+}
