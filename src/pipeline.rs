@@ -2,15 +2,15 @@
 
 use crosscap_algorithms::certificate::{Certificate, CertificateOptions, Verdict, certify};
 use crosscap_algorithms::chart::ClassicalScaling;
-use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::homology::{Homology, homology};
 use crosscap_algorithms::landmarks::RandomGreedy;
+use crosscap_algorithms::moments::MomentTree;
 use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::TwoPlanes;
 use crosscap_algorithms::stratify::{
-    Analysis, AnalysisOptions, Analyzer, Role, Stratification, StratifyCounts, StratifyOptions,
-    stratify,
+    Analysis, AnalysisOptions, Analyzer, Dimensions, Role, Stratification, StratifyCounts,
+    StratifyOptions, stratify,
 };
 use crosscap_algorithms::triangulate::{
     LargestAngle, Triangulation, TriangulationCounts, Triangulator,
@@ -275,7 +275,7 @@ type StageObserver = Box<dyn FnMut(Stage)>;
 pub struct Pipeline<S: Scalar = f64> {
     parameters: Parameters,
     models: Vec<Box<dyn SingularityModel>>,
-    estimator: Box<dyn DimensionEstimator<Scalar = S>>,
+    estimator: Option<Box<dyn DimensionEstimator<Scalar = S>>>,
     selector: Box<dyn LandmarkSelector<Scalar = S>>,
     chart: Box<dyn LocalChart>,
     test: Box<dyn CompatibilityTest>,
@@ -294,7 +294,7 @@ impl<S: Scalar> Pipeline<S> {
         parameters.check()?;
         Ok(Self {
             models: vec![Box::new(TwoPlanes::new(parameters.dp, parameters.ep)?)],
-            estimator: Box::new(PrincipalComponents::new(parameters.dt)?),
+            estimator: None,
             selector: Box::new(RandomGreedy::new()),
             chart: Box::new(ClassicalScaling),
             test: Box::new(PlanarPredicate),
@@ -311,9 +311,10 @@ impl<S: Scalar> Pipeline<S> {
         self
     }
 
-    /// Another dimension estimator.
+    /// Another dimension estimator than principal components with tolerance dt, which is
+    /// computed for all points together from the moments of a search tree.
     pub fn estimator(mut self, estimator: Box<dyn DimensionEstimator<Scalar = S>>) -> Self {
-        self.estimator = estimator;
+        self.estimator = Some(estimator);
         self
     }
 
@@ -386,11 +387,20 @@ impl<S: Scalar> Pipeline<S> {
         let oracle = EuclideanOracle::new(cloud.clone())?;
 
         self.enter(Stage::Neighborhoods, &mut clock);
+        let known = match self.estimator {
+            None if !parameters.surface => {
+                MomentTree::new(&cloud)?.dimensions(parameters.eps, parameters.dt, &threads)?
+            }
+            _ => Vec::new(),
+        };
         let analyzer = Analyzer {
             cloud: &cloud,
             metric: &oracle,
             oracle: &oracle,
-            estimator: self.estimator.as_ref(),
+            dimensions: match &self.estimator {
+                Some(estimator) => Dimensions::Estimator(estimator.as_ref()),
+                None => Dimensions::Known(&known),
+            },
             models: &self.models,
             execute: &threads,
         };

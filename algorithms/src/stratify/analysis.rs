@@ -1,6 +1,7 @@
 //! Which stratum every point of the cloud is in.
 
 use crate::execute::{self, Execute};
+use crate::moments::LocalDimension;
 use crate::principal::PrincipalFrame;
 use crate::singularity::OneSheet;
 use crosscap_core::{
@@ -41,11 +42,20 @@ pub struct Analyzer<'a, S: Scalar> {
     /// Neighborhoods in that metric.
     pub oracle: &'a dyn NeighborhoodOracle<Scalar = S>,
     /// Local dimension.
-    pub estimator: &'a dyn DimensionEstimator<Scalar = S>,
+    pub dimensions: Dimensions<'a, S>,
     /// Models that compete for neighborhoods that are not 2-dimensional.
     pub models: &'a [Box<dyn SingularityModel>],
     /// What runs the points.
     pub execute: &'a dyn Execute,
+}
+
+/// Where local dimensions come from.
+#[derive(Clone, Copy)]
+pub enum Dimensions<'a, S: Scalar> {
+    /// From an estimator, asked neighborhood by neighborhood.
+    Estimator(&'a dyn DimensionEstimator<Scalar = S>),
+    /// Known beforehand for the radius of the analysis, one a point.
+    Known(&'a [LocalDimension]),
 }
 
 /// What the analysis found out about every point.
@@ -239,24 +249,47 @@ impl<S: Scalar> Analyzer<'_, S> {
     }
 
     fn point(&self, i: usize, eps: f64, scratch: &mut Scratch<S>) -> Result<Found, Error> {
-        self.oracle.within(i, S::of(eps), &mut scratch.near);
-        let neighbors = scratch.near.len();
-        if neighbors < LEAST_NEIGHBORS {
-            return Err(Error::SparseNeighborhood {
+        let enough = |found: usize| {
+            if found >= LEAST_NEIGHBORS {
+                return Ok(found);
+            }
+            Err(Error::SparseNeighborhood {
                 point: i,
-                found: neighbors,
+                found,
                 needed: LEAST_NEIGHBORS,
                 parameter: "eps",
-            });
-        }
-        let estimate = self.estimator.estimate(&Neighborhood {
-            center: i,
-            radius: eps,
-            neighbors: &scratch.near,
-            metric: self.metric,
-            cloud: Some(self.cloud),
-        })?;
-        let dimension = estimate.dimension.min(255) as u8;
+            })
+        };
+        let (neighbors, dimension) = match self.dimensions {
+            Dimensions::Known(known) => {
+                let known = known.get(i).ok_or_else(|| Error::Shape {
+                    found: format!("{} known dimensions", known.len()),
+                    expected: format!("{}, one a point", self.cloud.len()),
+                })?;
+                (enough(known.count as usize)?, known.dimension as usize)
+            }
+            Dimensions::Estimator(estimator) => {
+                self.oracle.within(i, S::of(eps), &mut scratch.near);
+                let found = enough(scratch.near.len())?;
+                let estimate = estimator.estimate(&Neighborhood {
+                    center: i,
+                    radius: eps,
+                    neighbors: &scratch.near,
+                    metric: self.metric,
+                    cloud: Some(self.cloud),
+                })?;
+                if !estimate.value.is_finite() || estimate.dimension > self.cloud.dimension() {
+                    return Err(Error::Law {
+                        plugin: estimator.name().into(),
+                        law: "a dimension between 0 and that of the space",
+                        point: i,
+                        detail: format!("{} ({})", estimate.dimension, estimate.value),
+                    });
+                }
+                (found, estimate.dimension)
+            }
+        };
+        let dimension = dimension.min(255) as u8;
         let kind = match dimension {
             2 => Kind::Regular,
             0 | 1 => Kind::Unexplained,

@@ -5,5 +5,5 @@ mod cells;
 mod chains;
 mod waist;
 
-pub use analysis::{Analysis, AnalysisOptions, Analyzer, Role};
+pub use analysis::{Analysis, AnalysisOptions, Analyzer, Dimensions, Role};
 pub use waist::{Stratification, StratifyCounts, StratifyOptions, stratify};
