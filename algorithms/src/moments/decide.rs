@@ -59,13 +59,10 @@ fn semidefinite([a, b, c, d, e, f]: [f64; 6]) -> bool {
 /// bracket, and `None` is returned when `dt` does, too.
 pub(super) fn compressed(c: &[f64], m: usize, rest: f64, dt: f64) -> Option<u32> {
     let mut full = [[0.0; LEADING]; LEADING];
-    let mut at = 0;
-    for i in 0..m {
-        for j in i..m {
-            full[i][j] = c[at];
-            full[j][i] = c[at];
-            at += 1;
-        }
+    let pairs = (0..m).flat_map(|i| (i..m).map(move |j| (i, j)));
+    for ((i, j), x) in pairs.zip(c) {
+        full[i][j] = *x;
+        full[j][i] = *x;
     }
     let inner: f64 = (0..m).map(|i| full[i][i]).sum();
     let total = inner + rest;

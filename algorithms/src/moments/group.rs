@@ -96,6 +96,9 @@ impl Parts {
     }
 }
 
+/// Takes a position and the moments of the ball about it, or where they are not accurate its rows.
+type Each<'e> = dyn FnMut(usize, Result<Ball<'_>, &[usize]>) + 'e;
+
 /// What is found out about one ball.
 pub(super) struct Ball<'a> {
     /// Points in it.
@@ -218,7 +221,7 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
     pub(super) fn balls(
         &mut self,
         group: Group,
-        each: &mut dyn FnMut(usize, Result<Ball<'_>, &[usize]>),
+        each: &mut Each<'_>,
     ) {
         self.prepare(group);
         for position in group.start as usize..group.end as usize {

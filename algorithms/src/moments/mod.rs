@@ -19,7 +19,7 @@
 //! **What is exact.** Membership: that of `squared_distance(a, b).sqrt()`, rounded to the scalar of
 //! the cloud, `< eps`; a filter in single precision decides where it provably can, the original
 //! coordinates everywhere else. The dimension: that of
-//! [`PrincipalComponents`](crate::dimension::PrincipalComponents), except where a tail share
+//! [`PrincipalComponents`], except where a tail share
 //! equals the tolerance within rounding. In more than six dimensions balls are summed
 //! in six directions and the rest is only bounded; where the bound leaves the answer open, the
 //! full spectrum is computed. A covariance that would lose more than 1e-10 of its trace to

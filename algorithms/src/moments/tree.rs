@@ -253,7 +253,7 @@ fn widest(unordered: &[f64], rows: &[u32], n: usize) -> [f64; SPLIT_AXES] {
             }
         }
         let length = image.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if !(length > 0.0) {
+        if length.is_nan() || length <= 0.0 {
             break;
         }
         direction = image.map(|x| x / length);
