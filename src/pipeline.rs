@@ -68,7 +68,8 @@ impl FromStr for Method {
 pub struct Parameters {
     /// Radius of the neighborhoods in which dimension and crossings are looked for (strict).
     pub eps: f64,
-    /// Radius of the charts (strict); 3 dl when left out.
+    /// Largest radius of the charts (strict). Charts reach 3 dl, or less where this is
+    /// smaller; beyond that a chart only bends more. A chart with few landmarks is widened.
     pub tri_eps: Option<f64>,
     /// Dimension tolerance: share of the variance that may lie outside the dimension (strict).
     pub dt: f64,
@@ -116,7 +117,8 @@ impl Parameters {
 
     /// Radius of the charts.
     pub fn chart_radius(&self) -> f64 {
-        self.tri_eps.unwrap_or(CHART_SEPARATIONS * self.dl)
+        let usual = CHART_SEPARATIONS * self.dl;
+        self.tri_eps.map_or(usual, |radius| radius.min(usual))
     }
 
     /// Checks every parameter alone and against the others.
@@ -167,7 +169,7 @@ impl Parameters {
 /// Charts reach this many landmark separations.
 const CHART_SEPARATIONS: f64 = 3.0;
 /// A triangle whose middle strays farther than this many dl from the surface gets another landmark.
-const STRAY: f64 = 0.5;
+const STRAY: f64 = 0.4;
 /// A landmark that is added keeps at least this many dl to the others.
 const ADDED_SEPARATION: f64 = 0.4;
 /// Rounds of refinement.
@@ -371,6 +373,7 @@ impl<S: Scalar> Pipeline<S> {
         }
         let kept = first_of_each(cloud);
         let duplicates = cloud.len() - kept.len();
+        let whole = cloud;
         let (cloud, rows) = if duplicates == 0 || self.metric.is_some() {
             (cloud.clone(), (0..cloud.len()).collect())
         } else {
@@ -382,7 +385,7 @@ impl<S: Scalar> Pipeline<S> {
                 expected: format!("at least {LEAST_POINTS}"),
             });
         }
-        let boundary = boundary_rows(&parameters.boundary, &rows, cloud.len() + duplicates)?;
+        let boundary = boundary_rows(&parameters.boundary, &rows, whole)?;
         let threads = Threads::new(parameters.threads.unwrap_or(0))?;
         let oracle = EuclideanOracle::new(cloud.clone())?;
 
@@ -410,7 +413,6 @@ impl<S: Scalar> Pipeline<S> {
             boundary,
         })?;
 
-        let stray = stray_limit(&oracle, parameters.dl);
         let mut extra: Vec<usize> = Vec::new();
         let mut observer = std::mem::replace(&mut self.observer, Box::new(|_| {}));
         let (analysis, stratification, triangulation) = loop {
@@ -433,14 +435,15 @@ impl<S: Scalar> Pipeline<S> {
             observer(Stage::Triangulation);
             let triangulation = self.triangulator().triangulate(&stratification.waist)?;
             let before = extra.len();
-            if clock.rounds(Stage::Triangulation) <= REFINEMENTS {
+            // What cannot be triangulated is not mended by more landmarks.
+            let sound = triangulation.incomplete.len() * 100 <= stratification.rows.len();
+            if sound && clock.rounds(Stage::Triangulation) <= REFINEMENTS {
                 add_where_astray(
                     &oracle,
                     &analysis,
                     &stratification,
                     &triangulation.complex,
                     parameters.dl,
-                    stray,
                     &mut extra,
                 );
             }
@@ -530,55 +533,45 @@ const LEAST_POINTS: usize = 8;
 
 /// The first row of every place, in order.
 fn first_of_each<S: Scalar>(cloud: &PointCloud<S>) -> Vec<usize> {
-    let order = |a: usize, b: usize| {
-        let pairs = cloud.point(a).iter().zip(cloud.point(b));
-        pairs
-            .map(|(x, y)| x.as_f64().total_cmp(&y.as_f64()))
-            .find(|o| o.is_ne())
-            .unwrap_or(std::cmp::Ordering::Equal)
-    };
     let mut rows: Vec<usize> = (0..cloud.len()).collect();
-    rows.sort_by(|&a, &b| order(a, b).then(a.cmp(&b)));
+    rows.sort_by(|&a, &b| order_of_places(cloud, a, b).then(a.cmp(&b)));
     rows.dedup_by(|b, a| cloud.point(*a) == cloud.point(*b));
     rows.sort_unstable();
     rows
 }
 
-/// Positions of the boundary rows among the kept ones.
-fn boundary_rows(boundary: &[usize], rows: &[usize], points: usize) -> Result<Vec<usize>, Error> {
+/// Positions of the boundary rows, or of the rows that they are copies of, among the kept ones.
+fn boundary_rows<S: Scalar>(
+    boundary: &[usize],
+    rows: &[usize],
+    cloud: &PointCloud<S>,
+) -> Result<Vec<usize>, Error> {
     let mut out = Vec::with_capacity(boundary.len());
+    let mut by_place: Vec<usize> = (0..rows.len()).collect();
+    by_place.sort_by(|&a, &b| order_of_places(cloud, rows[a], rows[b]));
     for &row in boundary {
-        if row >= points {
+        if row >= cloud.len() {
             return Err(Error::Index {
                 what: "boundary row",
                 index: row,
-                limit: points,
+                limit: cloud.len(),
             });
         }
-        if let Ok(at) = rows.binary_search(&row) {
-            out.push(at);
-        }
+        let at = by_place.binary_search_by(|&k| order_of_places(cloud, rows[k], row));
+        out.extend(at.ok().map(|at| by_place[at]));
     }
+    out.sort_unstable();
+    out.dedup();
     Ok(out)
 }
 
-/// How far the middle of a triangle may be from the nearest point: off the surface by a share of dl,
-/// and along it by the spacing of the points, which is taken as the median distance to the
-/// fourth neighbor.
-fn stray_limit<S: Scalar>(oracle: &EuclideanOracle<S>, dl: f64) -> f64 {
-    const SAMPLE: usize = 512;
-    let n = oracle.len();
-    let mut near = Vec::new();
-    let mut spacings: Vec<f64> = (0..n)
-        .step_by(n.div_ceil(SAMPLE))
-        .map(|i| {
-            oracle.nearest(i, 5, &mut near);
-            near.last().map_or(0.0, |x| x.distance.as_f64())
-        })
-        .collect();
-    spacings.sort_by(f64::total_cmp);
-    let spacing = spacings.get(spacings.len() / 2).copied().unwrap_or(0.0);
-    (STRAY * dl).hypot(spacing)
+/// Lexicographic order of the coordinates of two rows; negative and positive zero are equal.
+fn order_of_places<S: Scalar>(cloud: &PointCloud<S>, a: usize, b: usize) -> std::cmp::Ordering {
+    let pairs = cloud.point(a).iter().zip(cloud.point(b));
+    pairs
+        .map(|(x, y)| (x.as_f64() + 0.0).total_cmp(&(y.as_f64() + 0.0)))
+        .find(|o| o.is_ne())
+        .unwrap_or(std::cmp::Ordering::Equal)
 }
 
 /// Adds a landmark where the middle of a triangle or of an edge is far from every point: where
@@ -589,7 +582,6 @@ fn add_where_astray<S: Scalar>(
     stratification: &Stratification<S>,
     complex: &Complex,
     dl: f64,
-    stray: f64,
     extra: &mut Vec<usize>,
 ) {
     let place = |v: u32| analysis.places.point(stratification.rows[v as usize]);
@@ -603,7 +595,7 @@ fn add_where_astray<S: Scalar>(
                 let sum: f64 = corners.iter().map(|&v| place(v)[k]).sum();
                 S::of(sum / corners.len() as f64)
             }));
-            let mut reach = stray;
+            let mut reach = STRAY * dl;
             oracle.within_of(&middle, S::of(reach), &mut near);
             if !near.is_empty() {
                 continue;
@@ -611,6 +603,10 @@ fn add_where_astray<S: Scalar>(
             while near.is_empty() && reach < 8.0 * dl {
                 reach *= 1.5;
                 oracle.within_of(&middle, S::of(reach), &mut near);
+            }
+            let off = |row: usize| off_plane(t.map(place), &middle, analysis.places.point(row));
+            if near.first().is_none_or(|x| off(x.index) < STRAY * dl) {
+                continue;
             }
             let free = |row: usize| {
                 let limit = (ADDED_SEPARATION * dl).powi(2);
@@ -626,6 +622,22 @@ fn add_where_astray<S: Scalar>(
             }
         }
     }
+}
+
+/// Distance of `x` from the plane through `middle` that is parallel to a triangle, in R^N.
+fn off_plane<S: Scalar>(corners: [&[f64]; 3], middle: &[S], x: &[f64]) -> f64 {
+    let minus = |p: &[f64], q: &[f64]| -> Vec<f64> { p.iter().zip(q).map(|(a, b)| a - b).collect() };
+    let dot = |p: &[f64], q: &[f64]| -> f64 { p.iter().zip(q).map(|(a, b)| a * b).sum() };
+    let (u, v) = (minus(corners[1], corners[0]), minus(corners[2], corners[0]));
+    let w: Vec<f64> = x.iter().zip(middle).map(|(a, m)| a - m.as_f64()).collect();
+    let (uu, uv, vv, uw, vw) = (dot(&u, &u), dot(&u, &v), dot(&v, &v), dot(&u, &w), dot(&v, &w));
+    let area = uu * vv - uv * uv;
+    if area <= 1e-12 * uu * vv {
+        return dot(&w, &w).sqrt();
+    }
+    let (s, t) = ((uw * vv - vw * uv) / area, (vw * uu - uw * uv) / area);
+    let inside: f64 = s * uw + t * vw;
+    (dot(&w, &w) - inside).max(0.0).sqrt()
 }
 
 /// The mesh of a triangulation: landmarks that were dropped leave no vertex.

@@ -97,7 +97,7 @@ impl Default for Limits {
             zero_area: 1e-7,
             min_angle: 0.1,
             points_to_mesh: 0.75,
-            mesh_to_points: 0.5,
+            mesh_to_points: 0.75,
             unused_landmarks: 0.01,
             points_tested: 200_000,
         }

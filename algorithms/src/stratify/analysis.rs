@@ -94,6 +94,23 @@ pub(super) struct Witness {
 }
 
 impl Analysis {
+    /// Enters what a point turned out to be.
+    fn take(&mut self, i: usize, kind: Kind, places: &mut [f64], boundary: bool) {
+        match kind {
+            Kind::Regular => {}
+            Kind::Unexplained => self.unexplained.push(i),
+            Kind::Near(witness) => self.witnesses.push(witness),
+            Kind::Singular(w) => {
+                let width = w.place.len();
+                places[i * width..(i + 1) * width].copy_from_slice(&w.place);
+                self.offsets[i] = w.offset;
+                self.radii[i] = w.radius;
+                self.model[i] = w.model;
+                self.roles[i] = if boundary { Role::Corner } else { Role::Curve };
+            }
+        }
+    }
+
     /// Turns witnesses into points on the curve where it has no points within `spacing`: a band
     /// narrower than the spacing of the data leaves gaps in the curve. Returns how many.
     pub(super) fn fill_curves(
@@ -216,21 +233,15 @@ impl<S: Scalar> Analyzer<'_, S> {
                 total += found.neighbors;
                 out.dimensions[i] = found.dimension;
                 out.candidates += usize::from(found.dimension != 2);
-                match found.kind {
-                    Kind::Regular => {}
-                    Kind::Unexplained => out.unexplained.push(i),
-                    Kind::Near(witness) => out.witnesses.push(witness),
-                    Kind::Singular(w) => {
-                        places[i * width..(i + 1) * width].copy_from_slice(&w.place);
-                        out.offsets[i] = w.offset;
-                        out.radii[i] = w.radius;
-                        out.model[i] = w.model;
-                        out.roles[i] = if boundary[i] {
-                            Role::Corner
-                        } else {
-                            Role::Curve
-                        };
-                    }
+                out.take(i, found.kind, &mut places, boundary[i]);
+            }
+            let again = self.beside_curves(&out, options.eps);
+            let more = execute::map(self.execute, again.len(), Scratch::default, |scratch, k| {
+                self.explain(again[k], options.eps, scratch)
+            });
+            for (&i, kind) in again.iter().zip(more) {
+                if !matches!(kind, Kind::Unexplained) {
+                    out.take(i, kind, &mut places, boundary[i]);
                 }
             }
             out.mean_neighbors = total as f64 / n.max(1) as f64;
@@ -246,6 +257,33 @@ impl<S: Scalar> Analyzer<'_, S> {
         }
         out.places = PointCloud::new(width, places)?;
         Ok(out)
+    }
+
+    /// Points that passed for 2-dimensional within `eps` of a point on a curve.
+    ///
+    /// Where sheets cross at a small angle the share of variance that tells a crossing is near the
+    /// tolerance, and single points fall below it: a curve that was found on both sides of such a
+    /// point is looked for there too.
+    fn beside_curves(&self, analysis: &Analysis, eps: f64) -> Vec<usize> {
+        let mut near = Vec::new();
+        let mut asked = vec![false; analysis.roles.len()];
+        let mut out = Vec::new();
+        for i in 0..asked.len() {
+            if analysis.roles[i] != Role::Curve || asked[i] {
+                continue;
+            }
+            self.oracle.within(i, S::of(eps), &mut near);
+            for x in &near {
+                if analysis.roles[x.index] == Role::Curve {
+                    asked[x.index] |= x.distance.as_f64() < 0.25 * eps;
+                } else if analysis.dimensions[x.index] == 2 {
+                    out.push(x.index);
+                }
+            }
+        }
+        out.sort_unstable();
+        out.dedup();
+        out
     }
 
     fn point(&self, i: usize, eps: f64, scratch: &mut Scratch<S>) -> Result<Found, Error> {
@@ -320,7 +358,7 @@ impl<S: Scalar> Analyzer<'_, S> {
                 let Ok(fit) = model.decompose(&local) else {
                     continue;
                 };
-                let score = score(&fit);
+                let score = score(&fit, radius);
                 if fit.residual < GAIN * plain && best.as_ref().is_none_or(|b| score < b.0) {
                     best = Some((score, m, fit));
                 }
@@ -461,7 +499,7 @@ const LABEL_MARGIN: f64 = 1.4;
 const FLAT: f64 = 0.06;
 
 /// What models are compared by: the logarithm of the residual, penalized for parameters.
-fn score(fit: &Decomposition) -> f64 {
+fn score(fit: &Decomposition, radius: f64) -> f64 {
     let count = fit.labels.len().max(2) as f64;
-    2.0 * count * fit.residual.max(1e-12).ln() + fit.parameters as f64 * count.ln()
+    2.0 * count * (fit.residual / radius).max(1e-12).ln() + fit.parameters as f64 * count.ln()
 }

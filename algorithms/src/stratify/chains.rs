@@ -24,7 +24,7 @@ pub(super) const NODE_SPACING: f64 = 0.125;
 /// Curve points closer than this share of dl are one curve.
 const REACH: f64 = 1.0;
 /// A chain is joined to a corner, or two free ends to each other, over at most this many dl.
-const JOIN: f64 = 2.0;
+const JOIN: f64 = 3.0;
 /// Separations along a curve that are tried, as multiples of dl: the closing gap of a
 /// closed curve depends on it, and long edges are the bad ones.
 const STRETCHES: usize = 16;
@@ -229,7 +229,7 @@ impl Curves {
                 .iter()
                 .map(|&(a, b)| distance(row_of(a), row_of(b)))
                 .fold(0.0, f64::max);
-            if best.as_ref().is_none_or(|b| longest < b.0 - 1e-12) {
+            if best.as_ref().is_none_or(|b| longest < b.0 * (1.0 - 1e-12)) {
                 best = Some((longest, chosen, edges));
             }
         }

@@ -61,6 +61,10 @@ const TEARS: [usize; 6] = [0, 4, 8, 12, 18, 26];
 const DROPS: usize = 6;
 /// Two landmarks of a curve closer than this many steps along it are joined by chain edges only.
 const SHORTCUT_STEPS: usize = 4;
+/// Repairs tried in all: a constant and a share of the landmarks. Data that no triangulation fits would
+/// otherwise be torn up star by star.
+const ATTEMPTS: usize = 400;
+const ATTEMPT_SHARE: usize = 4;
 /// Passes over the stars of curve landmarks: a repair of one may open another.
 const CURVE_PASSES: usize = 4;
 
@@ -272,6 +276,7 @@ impl Triangulator<'_> {
             kept: Vec::new(),
             counts: TriangulationCounts::default(),
             incomplete: Vec::new(),
+            attempts: ATTEMPTS + count / ATTEMPT_SHARE,
         };
         run.all()?;
         let (counts, incomplete) = (run.counts, std::mem::take(&mut run.incomplete));
@@ -305,6 +310,8 @@ struct Run<'r, 'a, S: Scalar> {
     kept: Vec<u32>,
     counts: TriangulationCounts,
     incomplete: Vec<Incomplete>,
+    /// Repairs that may still be tried.
+    attempts: usize,
 }
 
 impl<S: Scalar> Run<'_, '_, S> {
@@ -397,7 +404,7 @@ impl<S: Scalar> Run<'_, '_, S> {
     /// Tries to close the star of `v` by repairs, with `drop` also by giving up a landmark.
     /// `true` when one succeeded.
     fn mend(&mut self, v: u32, k: usize, drop: bool) -> Result<bool, Error> {
-        if !self.front.parts.repair {
+        if !self.front.parts.repair || self.attempts == 0 {
             return Ok(false);
         }
         let members: Vec<u32> = self.front.input.neighborhoods[k]
@@ -441,6 +448,10 @@ impl<S: Scalar> Run<'_, '_, S> {
         reach: usize,
         drop: Option<u32>,
     ) -> Result<bool, Error> {
+        self.attempts = match self.attempts.checked_sub(1) {
+            Some(left) => left,
+            None => return Ok(false),
+        };
         self.front.log.clear();
         let mut touched = Vec::new();
         // A landmark on a curve has triangles in other cells, which are none of this chart's business.
