@@ -626,11 +626,18 @@ fn add_where_astray<S: Scalar>(
 
 /// Distance of `x` from the plane through `middle` that is parallel to a triangle, in R^N.
 fn off_plane<S: Scalar>(corners: [&[f64]; 3], middle: &[S], x: &[f64]) -> f64 {
-    let minus = |p: &[f64], q: &[f64]| -> Vec<f64> { p.iter().zip(q).map(|(a, b)| a - b).collect() };
+    let minus =
+        |p: &[f64], q: &[f64]| -> Vec<f64> { p.iter().zip(q).map(|(a, b)| a - b).collect() };
     let dot = |p: &[f64], q: &[f64]| -> f64 { p.iter().zip(q).map(|(a, b)| a * b).sum() };
     let (u, v) = (minus(corners[1], corners[0]), minus(corners[2], corners[0]));
     let w: Vec<f64> = x.iter().zip(middle).map(|(a, m)| a - m.as_f64()).collect();
-    let (uu, uv, vv, uw, vw) = (dot(&u, &u), dot(&u, &v), dot(&v, &v), dot(&u, &w), dot(&v, &w));
+    let (uu, uv, vv, uw, vw) = (
+        dot(&u, &u),
+        dot(&u, &v),
+        dot(&v, &v),
+        dot(&u, &w),
+        dot(&v, &w),
+    );
     let area = uu * vv - uv * uv;
     if area <= 1e-12 * uu * vv {
         return dot(&w, &w).sqrt();

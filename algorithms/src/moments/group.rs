@@ -218,11 +218,7 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
     }
 
     /// Moments of every ball of the group in all coordinates.
-    pub(super) fn balls(
-        &mut self,
-        group: Group,
-        each: &mut Each<'_>,
-    ) {
+    pub(super) fn balls(&mut self, group: Group, each: &mut Each<'_>) {
         self.prepare(group);
         for position in group.start as usize..group.end as usize {
             self.part(position);

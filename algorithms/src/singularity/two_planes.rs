@@ -201,11 +201,11 @@ pub struct TwoPlanes {
     pub curved: bool,
 }
 
-/// Share of the points that each of the four cells must hold.
+/// Share of the points that three of the four cells must hold.
 const LEAST_CELL_SHARE: f64 = 0.03;
 /// Farthest that a center is moved, as a share of the radius.
 const LARGEST_STEP: f64 = 0.6;
-/// Every cell has a point this close to the crossing, as a share of the radius.
+/// Three cells have a point this close to the crossing, as a share of the radius.
 const SUPPORT_REACH: f64 = 0.6;
 /// A point off the curve tells where the curve is up to this many ep.
 const WITNESS_REACH: f64 = 3.0;
@@ -238,24 +238,17 @@ impl TwoPlanes {
     }
 }
 
-impl TwoPlanes {
-    /// Whether the data show a crossing at `place`: points of all four cells close by, and
-    /// some point in the band. Patches also cross where they are mere extrapolation.
-    fn supported(
-        &self,
-        place: &Vector3<f64>,
-        points: &[Vector3<f64>],
-        labels: &[u8],
-        radius: f64,
-    ) -> bool {
-        let mut nearest = [f64::INFINITY; 5];
-        for (x, &label) in points.iter().zip(labels) {
-            let n = &mut nearest[label as usize];
-            *n = n.min((x - place).norm());
-        }
-        nearest[1..].iter().all(|&d| d < SUPPORT_REACH * radius)
-            && nearest[0] < SUPPORT_REACH * radius
+/// Whether the data show a crossing at `place`: some point in the band and points of three
+/// cells close by. Patches also cross where they are mere extrapolation; one cell may have a hole
+/// in its sample there.
+fn supported(place: &Vector3<f64>, points: &[Vector3<f64>], labels: &[u8], radius: f64) -> bool {
+    let mut nearest = [f64::INFINITY; 5];
+    for (x, &label) in points.iter().zip(labels) {
+        let n = &mut nearest[label as usize];
+        *n = n.min((x - place).norm());
     }
+    let close = |d: &f64| *d < SUPPORT_REACH * radius;
+    close(&nearest[0]) && nearest[1..].iter().filter(|d| close(d)).count() >= 3
 }
 
 impl SingularityModel for TwoPlanes {
@@ -343,14 +336,23 @@ impl SingularityModel for TwoPlanes {
             });
         }
         let least = (LEAST_CELL_SHARE * (count - held[0]) as f64).max(3.0);
-        if let Some(stratum) = (1..5).find(|&c| (held[c] as f64) < least) {
+        // One cell may hold less, where the sample has a hole; none may be empty.
+        let mut cells = [1, 2, 3, 4];
+        cells.sort_by_key(|&c| held[c]);
+        let thin = |c: usize, least: f64| (held[c] as f64) < least;
+        let short = if thin(cells[0], 1.0) {
+            Some(cells[0])
+        } else {
+            thin(cells[1], least).then_some(cells[1])
+        };
+        if let Some(stratum) = short {
             return Err(Rejection::EmptyStratum {
                 stratum,
                 found: held[stratum],
             });
         }
         let reached = meet(&sheets, center, LARGEST_STEP * local.radius)
-            .filter(|x| self.supported(x, points, &labels, local.radius));
+            .filter(|x| supported(x, points, &labels, local.radius));
         let (moved, center_offset) = match reached {
             Some(x)
                 if labels[local.center] == 0 || (x - center).norm() < WITNESS_REACH * self.ep =>
