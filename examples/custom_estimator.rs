@@ -32,7 +32,7 @@ fn frame<S: Scalar>(cloud: &PointCloud<S>, rows: &[usize]) -> Frame {
             *m += x.as_f64() / count;
         }
     }
-    let mut covariance = DMatrix::zeros(n, n);
+    let mut covariance = DMatrix::<f64>::zeros(n, n);
     for &row in rows {
         let x = cloud.point(row);
         for a in 0..n {
