@@ -87,10 +87,15 @@ impl DimensionEstimator for TrimmedComponents {
                 .sum();
             all - inside
         };
-        let mut ranked: Vec<(f64, usize)> = rows.iter().map(|&row| (off(row), row)).collect();
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let offs: Vec<f64> = rows.iter().map(|&row| off(row)).collect();
+        let mut ranked = offs.clone();
+        ranked.sort_by(f64::total_cmp);
         let kept = (rows.len() as f64 * (1.0 - self.trim)).ceil() as usize;
-        let rows: Vec<usize> = ranked[..kept].iter().map(|x| x.1).collect();
+        // Points as far off as the last one kept stay as well, or rounding would choose among them.
+        let spread: f64 = first.variances.iter().sum();
+        let limit = ranked[kept.clamp(1, rows.len()) - 1] + 1e-9 * spread;
+        let kept = rows.iter().zip(&offs).filter(|x| *x.1 <= limit);
+        let rows: Vec<usize> = kept.map(|x| *x.0).collect();
 
         let spectrum = frame(cloud, &rows).variances;
         let total: f64 = spectrum.iter().sum();
