@@ -355,9 +355,9 @@ fn a_boundary_that_was_not_given_is_refused() {
 fn landmarks_farther_apart_than_the_features_are_refused() {
     let torus = SampleSurface::find("torus").unwrap();
     // The tube has radius 1.
-    for dl in [1.4, 2.0, 3.0] {
-        for seed in 0..3 {
-            let sample = torus.sample(&Sampling::new(4_000, seed)).unwrap();
+    for dl in [1.4, 3.0] {
+        for seed in 0..1 {
+            let sample = torus.sample(&Sampling::new(2_500, seed)).unwrap();
             let parameters = Parameters {
                 seed,
                 ..Parameters::new(1.0, dl).surface()
@@ -398,11 +398,11 @@ fn neighborhoods_far_too_large_are_refused_or_harmless() {
 #[test]
 fn crossing_sheets_taken_as_one_surface_are_refused() {
     let spheres = SampleSurface::find("two_spheres").unwrap();
-    let sample = spheres.sample(&Sampling::new(12_000, 5)).unwrap();
-    for seed in 0..2 {
+    let sample = spheres.sample(&Sampling::new(6_000, 5)).unwrap();
+    for seed in 0..1 {
         let parameters = Parameters {
             seed,
-            ..Parameters::new(0.3, 0.2).surface()
+            ..Parameters::new(0.4, 0.3).surface()
         };
         assert_refused(&sample.points, parameters);
     }
