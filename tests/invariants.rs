@@ -1,0 +1,412 @@
+//! What a reconstruction must not depend on.
+
+use crosscap::prelude::*;
+use crosscap_algorithms::chart::ClassicalScaling;
+use crosscap_algorithms::dimension::PrincipalComponents;
+use crosscap_algorithms::execute::Serial;
+use crosscap_algorithms::landmarks::RandomGreedy;
+use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
+use crosscap_algorithms::singularity::TwoPlanes;
+use crosscap_algorithms::stratify::{
+    AnalysisOptions, Analyzer, Stratification, StratifyOptions, stratify,
+};
+use crosscap_algorithms::surfaces::{Random, RigidMotion, embed, scaled};
+use crosscap_backends::euclidean::EuclideanOracle;
+use crosscap_backends::linear_program::LinearProgramTest;
+use crosscap_core::{Scalar, StratifiedLandmarks};
+use proptest::prelude::*;
+
+/// A cloud with parameters under which it is reconstructed.
+struct Case {
+    points: PointCloud<f64>,
+    parameters: Parameters,
+}
+
+/// A closed surface, a surface with boundary and one that crosses itself, small enough to be
+/// reconstructed many times.
+fn cases(seed: u64) -> Vec<Case> {
+    let draw = |name: &str, count: usize| {
+        let surface = SampleSurface::find(name).unwrap();
+        let sampling = Sampling {
+            boundary: true,
+            ..Sampling::new(count, seed)
+        };
+        surface.sample(&sampling).unwrap()
+    };
+    let torus = draw("torus", 3000);
+    let strip = draw("moebius", 3000);
+    let spheres = draw("two_spheres", 9000);
+    vec![
+        Case {
+            points: torus.points,
+            parameters: Parameters::new(1.0, 0.45).surface(),
+        },
+        Case {
+            points: strip.points,
+            parameters: Parameters {
+                boundary: strip.boundary,
+                ..Parameters::new(0.4, 0.16).surface()
+            },
+        },
+        Case {
+            points: spheres.points,
+            parameters: Parameters {
+                dp: 0.05,
+                ep: 0.06,
+                ..Parameters::new(0.35, 0.25)
+            },
+        },
+    ]
+}
+
+/// The case of closed and crossing surfaces alone: landmarks along a given boundary are chosen
+/// by their row, since nothing else tells its points apart.
+fn cases_without_boundary(seed: u64) -> Vec<Case> {
+    let mut all = cases(seed);
+    all.retain(|c| c.parameters.boundary.is_empty());
+    all
+}
+
+fn reconstruct<S: Scalar>(points: &PointCloud<S>, parameters: &Parameters) -> Outcome {
+    Pipeline::new(parameters.clone())
+        .unwrap()
+        .reconstruct(points)
+        .unwrap()
+}
+
+/// The complex with the rows of the input for vertices: triangles and curve edges, sorted.
+type ByRow = (Vec<[i64; 3]>, Vec<([i64; 2], u8)>);
+
+fn by_row(mesh: &Mesh, name: impl Fn(i64) -> i64) -> ByRow {
+    let row = |v: u32| name(mesh.point_index[v as usize]);
+    let mut triangles: Vec<[i64; 3]> = mesh
+        .complex
+        .triangles
+        .iter()
+        .map(|t| {
+            let mut t = t.map(row);
+            t.sort_unstable();
+            t
+        })
+        .collect();
+    triangles.sort_unstable();
+    let mut edges: Vec<([i64; 2], u8)> = mesh
+        .complex
+        .curve_edges
+        .iter()
+        .map(|e| {
+            let mut ends = e.ends.map(row);
+            ends.sort_unstable();
+            (ends, e.cells)
+        })
+        .collect();
+    edges.sort_unstable();
+    (triangles, edges)
+}
+
+/// Says what differs, or nothing.
+fn difference(a: &ByRow, b: &ByRow) -> Option<String> {
+    if a == b {
+        return None;
+    }
+    let only = |x: &[[i64; 3]], y: &[[i64; 3]]| -> Vec<[i64; 3]> {
+        x.iter()
+            .filter(|t| y.binary_search(t).is_err())
+            .copied()
+            .collect()
+    };
+    let (left, right) = (only(&a.0, &b.0), only(&b.0, &a.0));
+    let edges = a.1.iter().filter(|e| b.1.binary_search(e).is_err()).count();
+    Some(format!(
+        "{} of {} triangles and {edges} of {} curve edges are not in the other: {left:?}; instead {right:?}",
+        left.len(),
+        a.0.len(),
+        a.1.len(),
+    ))
+}
+
+fn same(row: i64) -> i64 {
+    row
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3, max_shrink_iters: 0, ..ProptestConfig::default() })]
+
+    #[test]
+    fn rigid_motion_does_not_change_the_complex(seed in 0u64..1000, reach in 0.0..10.0f64) {
+        for case in cases(seed) {
+            let before = reconstruct(&case.points, &case.parameters);
+            let motion = RigidMotion::random(case.points.dimension(), reach, seed ^ 7);
+            let after = reconstruct(&motion.apply(&case.points).unwrap(), &case.parameters);
+            prop_assert_eq!(difference(&by_row(&before.mesh, same), &by_row(&after.mesh, same)), None);
+            prop_assert_eq!(before.is_verified(), after.is_verified());
+        }
+    }
+
+    #[test]
+    fn scaling_with_the_parameters_does_not_change_the_complex(seed in 0u64..1000, power in -6i32..=6) {
+        let factor = 10f64.powi(power);
+        for case in cases(seed) {
+            let before = reconstruct(&case.points, &case.parameters);
+            let p = &case.parameters;
+            let parameters = Parameters {
+                eps: p.eps * factor,
+                dp: p.dp * factor,
+                ep: p.ep * factor,
+                dl: p.dl * factor,
+                ..p.clone()
+            };
+            let after = reconstruct(&scaled(&case.points, factor).unwrap(), &parameters);
+            prop_assert_eq!(difference(&by_row(&before.mesh, same), &by_row(&after.mesh, same)), None);
+            prop_assert_eq!(before.is_verified(), after.is_verified());
+        }
+    }
+
+    #[test]
+    fn isometric_embedding_does_not_change_the_complex(seed in 0u64..1000, dimension in 4usize..=30) {
+        for case in cases(seed) {
+            let before = reconstruct(&case.points, &case.parameters);
+            let after = reconstruct(&embed(&case.points, dimension, seed).unwrap(), &case.parameters);
+            prop_assert_eq!(difference(&by_row(&before.mesh, same), &by_row(&after.mesh, same)), None);
+            prop_assert_eq!(before.is_verified(), after.is_verified());
+        }
+    }
+
+    #[test]
+    fn order_of_the_rows_does_not_change_the_complex(seed in 0u64..1000) {
+        for case in cases_without_boundary(seed) {
+            let oracle = EuclideanOracle::new(case.points.clone()).unwrap();
+            let before = waist_of(&case, &oracle, None);
+            // Row k of the shuffled cloud is row order[k] of the cloud.
+            let order = Random::new(seed).permutation(case.points.len());
+            let mut place = vec![0; order.len()];
+            for (k, &row) in order.iter().enumerate() {
+                place[row] = k;
+            }
+            let landmarks: Vec<usize> = before.rows.iter().map(|&r| place[r]).collect();
+            let shuffled = Case {
+                points: case.points.select(&order),
+                parameters: case.parameters.clone(),
+            };
+            let oracle = EuclideanOracle::new(shuffled.points.clone()).unwrap();
+            let after = waist_of(&shuffled, &oracle, Some(landmarks.clone()));
+            // Landmarks have the same numbers, so nothing else needs to be renamed.
+            prop_assert_eq!(&after.rows, &landmarks);
+            prop_assert!(before.waist == after.waist, "the waists differ");
+            prop_assert_eq!(complex_of(&case, &before.waist), complex_of(&shuffled, &after.waist));
+        }
+    }
+
+    #[test]
+    fn single_precision_gives_the_same_complex(seed in 0u64..1000) {
+        for case in cases(seed) {
+            let single: PointCloud<f32> = case.points.cast();
+            let narrow = reconstruct(&single, &case.parameters);
+            let wide = reconstruct(&single.cast::<f64>(), &case.parameters);
+            prop_assert_eq!(difference(&by_row(&narrow.mesh, same), &by_row(&wide.mesh, same)), None);
+            prop_assert_eq!(narrow.is_verified(), wide.is_verified());
+            prop_assert_eq!(narrow.homology, wide.homology);
+        }
+    }
+
+    #[test]
+    fn copies_of_points_do_not_change_the_complex(seed in 0u64..1000, copies in 1usize..400) {
+        for case in cases(seed) {
+            let before = reconstruct(&case.points, &case.parameters);
+            // Every copy stands behind its original, anywhere.
+            let n = case.points.len();
+            let mut random = Random::new(seed);
+            let mut rows: Vec<(usize, bool)> = (0..n).map(|r| (r, true)).collect();
+            for _ in 0..copies {
+                let at = 1 + random.below(rows.len());
+                let original = rows[random.below(at)].0;
+                rows.insert(at, (original, false));
+            }
+            let all: Vec<usize> = rows.iter().map(|r| r.0).collect();
+            let mut place = vec![0; n];
+            for (k, &(row, first)) in rows.iter().enumerate() {
+                if first {
+                    place[row] = k;
+                }
+            }
+            let parameters = Parameters {
+                boundary: case.parameters.boundary.iter().map(|&r| place[r]).collect(),
+                ..case.parameters.clone()
+            };
+            let after = reconstruct(&case.points.select(&all), &parameters);
+            prop_assert_eq!(before.report.duplicates, 0);
+            prop_assert_eq!(after.report.duplicates, copies);
+            prop_assert_eq!(after.report.points, n + copies);
+            let moved = by_row(&before.mesh, |r| place[r as usize] as i64);
+            prop_assert_eq!(difference(&moved, &by_row(&after.mesh, same)), None);
+        }
+    }
+}
+
+/// A boundary may be named by any copy of its points.
+#[test]
+fn boundary_rows_may_be_copies() {
+    let case = cases(4).swap_remove(1);
+    let n = case.points.len();
+    let boundary = &case.parameters.boundary;
+    let doubled: Vec<usize> = (0..n).chain(boundary.iter().copied()).collect();
+    let before = reconstruct(&case.points, &case.parameters);
+    let parameters = Parameters {
+        boundary: (n..doubled.len()).collect(),
+        ..case.parameters.clone()
+    };
+    let after = reconstruct(&case.points.select(&doubled), &parameters);
+    assert_eq!(after.report.duplicates, boundary.len());
+    assert_eq!(
+        difference(&by_row(&before.mesh, same), &by_row(&after.mesh, same)),
+        None
+    );
+}
+
+/// A selector that returns what it was told: landmarks chosen elsewhere.
+struct Given(Vec<usize>);
+
+impl LandmarkSelector for Given {
+    type Scalar = f64;
+
+    fn select(
+        &self,
+        _oracle: &dyn NeighborhoodOracle<Scalar = f64>,
+        candidates: &[usize],
+        _taken: &[usize],
+        _separation: f64,
+        _seed: u64,
+    ) -> Result<Vec<usize>, Error> {
+        let chosen = self.0.iter().copied();
+        Ok(chosen
+            .filter(|r| candidates.binary_search(r).is_ok())
+            .collect())
+    }
+
+    fn name(&self) -> &str {
+        "given"
+    }
+}
+
+/// The waist of a case, its neighborhoods by `oracle`, its landmarks given or random.
+fn waist_of(
+    case: &Case,
+    oracle: &dyn NeighborhoodOracle<Scalar = f64>,
+    landmarks: Option<Vec<usize>>,
+) -> Stratification<f64> {
+    let p = &case.parameters;
+    let models: Vec<Box<dyn SingularityModel>> =
+        vec![Box::new(TwoPlanes::new(p.dp, p.ep).unwrap())];
+    let selector: Box<dyn LandmarkSelector<Scalar = f64>> = match landmarks {
+        Some(rows) => Box::new(Given(rows)),
+        None => Box::new(RandomGreedy::new()),
+    };
+    let analyzer = Analyzer {
+        cloud: &case.points,
+        metric: &Euclidean::new(case.points.clone()),
+        oracle,
+        estimator: &PrincipalComponents::new(p.dt).unwrap(),
+        models: &models,
+        execute: &Serial,
+    };
+    let options = AnalysisOptions {
+        eps: p.eps,
+        surface: p.surface,
+        boundary: p.boundary.clone(),
+    };
+    let mut analysis = analyzer.analyze(&options).unwrap();
+    let options = StratifyOptions {
+        dl: p.dl,
+        tri_eps: p.chart_radius(),
+        seed: p.seed,
+        extra: Vec::new(),
+    };
+    stratify(&analyzer, &mut analysis, None, selector.as_ref(), &options).unwrap()
+}
+
+/// The complex of a waist with the default parts.
+fn complex_of(case: &Case, waist: &StratifiedLandmarks<f64>) -> Complex {
+    let pipeline = Pipeline::<f64>::new(case.parameters.clone()).unwrap();
+    pipeline.triangulate(waist).unwrap().complex
+}
+
+#[test]
+fn tree_and_scan_give_the_same_waist() {
+    for case in cases(11) {
+        let tree = EuclideanOracle::new(case.points.clone()).unwrap();
+        let scan = BruteForceOracle::new(Euclidean::new(case.points.clone()));
+        let (tree, scan) = (waist_of(&case, &tree, None), waist_of(&case, &scan, None));
+        assert_eq!(tree.rows, scan.rows);
+        assert!(tree.waist == scan.waist, "the waists differ");
+    }
+}
+
+#[test]
+fn linear_program_and_predicate_give_the_same_complex() {
+    for case in cases(12) {
+        let exact = reconstruct(&case.points, &case.parameters);
+        let program = Pipeline::new(case.parameters.clone())
+            .unwrap()
+            .compatibility(Box::new(LinearProgramTest))
+            .reconstruct(&case.points)
+            .unwrap();
+        assert_eq!(
+            difference(&by_row(&exact.mesh, same), &by_row(&program.mesh, same)),
+            None
+        );
+    }
+}
+
+/// Bytes of the mesh file, and the report without what may differ: times and the number of threads.
+fn bytes(case: &Case, threads: usize) -> (Vec<u8>, String) {
+    let parameters = Parameters {
+        threads: Some(threads),
+        ..case.parameters.clone()
+    };
+    let mut outcome = reconstruct(&case.points, &parameters);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mesh.npz");
+    crosscap::backends::files::write_mesh(&file, &outcome.mesh, &Default::default(), None).unwrap();
+    outcome.report.seconds.clear();
+    outcome.report.parameters.threads = None;
+    let mut said = serde_json::to_string(&outcome.report).unwrap();
+    said += &serde_json::to_string(&outcome.certificate).unwrap();
+    said += &serde_json::to_string(&outcome.homology).unwrap();
+    (std::fs::read(file).unwrap(), said)
+}
+
+#[test]
+fn threads_and_repetition_do_not_change_a_byte() {
+    for case in cases(13) {
+        let first = bytes(&case, 1);
+        for threads in [1, 2, 4] {
+            assert!(bytes(&case, threads) == first, "{threads} threads");
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn scaling_recovers_planar_distances(
+        raw in prop::collection::vec(-1.0..1.0f64, 6..80), power in -6i32..=6, extra in 0usize..20, seed in any::<u64>(),
+    ) {
+        let factor = 10f64.powi(power);
+        let flat = PointCloud::new(2, raw[..raw.len() / 2 * 2].iter().map(|x| x * factor).collect()).unwrap();
+        let cloud = embed(&flat, 2 + extra, seed).unwrap();
+        let n = cloud.len();
+        let distances: Vec<f64> = (0..n * n)
+            .map(|k| cloud.squared_distance(k / n, k % n).sqrt())
+            .collect();
+        let chart = ClassicalScaling.chart(n, &distances, 2).unwrap();
+        prop_assert!(chart.distortion < 1e-9);
+        let laid = PointCloud::new(2, chart.coordinates).unwrap();
+        for a in 0..n {
+            for b in 0..a {
+                let (d, e) = (distances[a * n + b], laid.squared_distance(a, b).sqrt());
+                // The chart comes from squares: half of the digits are those of small distances.
+                prop_assert!((d - e).abs() < 1e-6 * factor, "{d} became {e}");
+                prop_assert!((d * d - e * e).abs() < 1e-12 * factor * factor, "{d} became {e}");
+            }
+        }
+    }
+}
