@@ -9,11 +9,11 @@ use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::TwoPlanes;
 use crosscap_algorithms::stratify::{
-    Analysis, AnalysisOptions, Analyzer, Role, Stratification, StratifyCounts, StratifyOptions,
-    stratify,
+    Analysis, AnalysisOptions, Analyzer, Published, Role, Stratification, StratifyCounts,
+    StratifyOptions, stratify,
 };
 use crosscap_algorithms::triangulate::{
-    LargestAngle, Triangulation, TriangulationCounts, Triangulator,
+    LargestAngle, MinimumCircumradius, Rules, Triangulation, TriangulationCounts, Triangulator,
 };
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::parallel::Threads;
@@ -34,7 +34,8 @@ pub enum Method {
     /// Cells cut along the curves, repairs, refinement: what the measurements say works.
     #[default]
     Cells,
-    /// The algorithm of Martin & Watson (2011) to the letter, for comparison.
+    /// The algorithm of Martin & Watson (2011) to the letter, for comparison: see [`Published`] and
+    /// [`Rules::PAPER`]. Models and triangle rule of the builder are not used.
     Paper,
 }
 
@@ -68,7 +69,7 @@ impl FromStr for Method {
 pub struct Parameters {
     /// Radius of the neighborhoods in which dimension and crossings are looked for (strict).
     pub eps: f64,
-    /// Radius of the charts (strict); 3 dl when left out.
+    /// Radius of the charts (strict); 3 dl when left out, eps with the paper's method.
     pub tri_eps: Option<f64>,
     /// Dimension tolerance: share of the variance that may lie outside the dimension (strict).
     pub dt: f64,
@@ -116,7 +117,10 @@ impl Parameters {
 
     /// Radius of the charts.
     pub fn chart_radius(&self) -> f64 {
-        self.tri_eps.unwrap_or(CHART_SEPARATIONS * self.dl)
+        self.tri_eps.unwrap_or(match self.method {
+            Method::Cells => CHART_SEPARATIONS * self.dl,
+            Method::Paper => self.eps,
+        })
     }
 
     /// Checks every parameter alone and against the others.
@@ -394,11 +398,24 @@ impl<S: Scalar> Pipeline<S> {
             models: &self.models,
             execute: &threads,
         };
-        let analysis = analyzer.analyze(&AnalysisOptions {
+        let literal = (parameters.method == Method::Paper).then(|| Published {
             eps: parameters.eps,
+            tri_eps: parameters.chart_radius(),
+            dp: parameters.dp,
+            ep: parameters.ep,
+            dl: parameters.dl,
+            seed: parameters.seed,
             surface: parameters.surface,
-            boundary,
-        })?;
+            boundary: boundary.clone(),
+        });
+        let analysis = match &literal {
+            Some(published) => published.analyze(&analyzer)?,
+            None => analyzer.analyze(&AnalysisOptions {
+                eps: parameters.eps,
+                surface: parameters.surface,
+                boundary,
+            })?,
+        };
 
         let stray = stray_limit(&oracle, parameters.dl);
         let mut extra: Vec<usize> = Vec::new();
@@ -407,23 +424,32 @@ impl<S: Scalar> Pipeline<S> {
             clock.enter(Stage::Landmarks);
             observer(Stage::Landmarks);
             let mut analysis = analysis.clone();
-            let stratification = stratify(
-                &analyzer,
-                &mut analysis,
-                self.metric.as_deref(),
-                self.selector.as_ref(),
-                &StratifyOptions {
-                    dl: parameters.dl,
-                    tri_eps: parameters.chart_radius(),
-                    seed: parameters.seed,
-                    extra: extra.clone(),
-                },
-            )?;
+            let stratification = match &literal {
+                Some(published) => published.stratify(
+                    &analyzer,
+                    &analysis,
+                    self.metric.as_deref(),
+                    self.selector.as_ref(),
+                    self.chart.as_ref(),
+                )?,
+                None => stratify(
+                    &analyzer,
+                    &mut analysis,
+                    self.metric.as_deref(),
+                    self.selector.as_ref(),
+                    &StratifyOptions {
+                        dl: parameters.dl,
+                        tri_eps: parameters.chart_radius(),
+                        seed: parameters.seed,
+                        extra: extra.clone(),
+                    },
+                )?,
+            };
             clock.enter(Stage::Triangulation);
             observer(Stage::Triangulation);
             let triangulation = self.triangulator().triangulate(&stratification.waist)?;
             let before = extra.len();
-            if clock.rounds(Stage::Triangulation) <= REFINEMENTS {
+            if literal.is_none() && clock.rounds(Stage::Triangulation) <= REFINEMENTS {
                 add_where_astray(
                     &oracle,
                     &analysis,
@@ -500,12 +526,22 @@ impl<S: Scalar> Pipeline<S> {
     }
 
     fn triangulator(&self) -> Triangulator<'_> {
+        let literal = self.parameters.method == Method::Paper;
         Triangulator {
             chart: self.chart.as_ref(),
             test: self.test.as_ref(),
-            rule: self.rule.as_ref(),
+            rule: if literal {
+                &MinimumCircumradius
+            } else {
+                self.rule.as_ref()
+            },
             largest_circumradius: f64::INFINITY,
-            repair: true,
+            repair: !literal,
+            rules: if literal {
+                Rules::PAPER
+            } else {
+                Rules::MEASURED
+            },
         }
     }
 
