@@ -37,7 +37,7 @@ fn describe(outcome: &Outcome) -> String {
 fn a_sphere_comes_out_for_some_seed_and_is_never_silently_wrong() {
     // Charts of 4 dl as in the paper's example, and of 2 dl, which hide many conflicts.
     let mut verified = [0, 0];
-    for seed in 0..6 {
+    for seed in 0..4 {
         for (k, dl) in [0.125, 0.25].into_iter().enumerate() {
             let parameters = published(0.5, dl, seed).surface();
             let outcome = reconstruct(parameters, "sphere", &Sampling::new(4000, seed));
@@ -52,7 +52,7 @@ fn a_sphere_comes_out_for_some_seed_and_is_never_silently_wrong() {
             }
         }
     }
-    println!("verified at 4 dl, 2 dl: {verified:?} of 6");
+    println!("verified at 4 dl, 2 dl: {verified:?} of 4");
     assert!(verified[0] > 0);
 }
 
