@@ -5,7 +5,7 @@
 use crosscap::algorithms::chart::ClassicalScaling;
 use crosscap::algorithms::homology::homology;
 use crosscap::algorithms::predicate::PlanarPredicate;
-use crosscap::algorithms::triangulate::{LargestAngle, Triangulator};
+use crosscap::algorithms::triangulate::{LargestAngle, Rules, Triangulator};
 use crosscap::core::{CellNeighborhood, SparseDistances, StratifiedLandmarks};
 
 /// Great-circle distances of `n` places spread over the unit sphere: stands for a measured matrix.
@@ -69,6 +69,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         rule: &LargestAngle,
         largest_circumradius: f64::INFINITY,
         repair: true,
+        rules: Rules::MEASURED,
     }
     .triangulate(&waist)?;
     let found = homology(&triangulation.complex)?;

@@ -9,11 +9,11 @@ use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::TwoPlanes;
 use crosscap_algorithms::stratify::{
-    Analysis, AnalysisOptions, Analyzer, Dimensions, Role, Stratification, StratifyCounts,
-    StratifyOptions, stratify,
+    Analysis, AnalysisOptions, Analyzer, Dimensions, Published, Role, Stratification,
+    StratifyCounts, StratifyOptions, stratify,
 };
 use crosscap_algorithms::triangulate::{
-    LargestAngle, Triangulation, TriangulationCounts, Triangulator,
+    LargestAngle, MinimumCircumradius, Rules, Triangulation, TriangulationCounts, Triangulator,
 };
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::parallel::Threads;
@@ -34,7 +34,8 @@ pub enum Method {
     /// Cells cut along the curves, repairs, refinement: what the measurements say works.
     #[default]
     Cells,
-    /// The algorithm of Martin & Watson (2011) to the letter, for comparison.
+    /// The algorithm of Martin & Watson (2011) to the letter, for comparison: see [`Published`] and
+    /// [`Rules::PAPER`]. Models and triangle rule of the builder are not used.
     Paper,
 }
 
@@ -70,6 +71,7 @@ pub struct Parameters {
     pub eps: f64,
     /// Largest radius of the charts (strict). Charts reach 3 dl, or less where this is
     /// smaller; beyond that a chart only bends more. A chart with few landmarks is widened.
+    /// With the paper's method the radius itself, eps when left out.
     pub tri_eps: Option<f64>,
     /// Dimension tolerance: share of the variance that may lie outside the dimension (strict).
     pub dt: f64,
@@ -118,7 +120,10 @@ impl Parameters {
     /// Radius of the charts.
     pub fn chart_radius(&self) -> f64 {
         let usual = CHART_SEPARATIONS * self.dl;
-        self.tri_eps.map_or(usual, |radius| radius.min(usual))
+        match self.method {
+            Method::Cells => self.tri_eps.map_or(usual, |radius| radius.min(usual)),
+            Method::Paper => self.tri_eps.unwrap_or(self.eps),
+        }
     }
 
     /// Checks every parameter alone and against the others.
@@ -407,11 +412,24 @@ impl<S: Scalar> Pipeline<S> {
             models: &self.models,
             execute: &threads,
         };
-        let analysis = analyzer.analyze(&AnalysisOptions {
+        let literal = (parameters.method == Method::Paper).then(|| Published {
             eps: parameters.eps,
+            tri_eps: parameters.chart_radius(),
+            dp: parameters.dp,
+            ep: parameters.ep,
+            dl: parameters.dl,
+            seed: parameters.seed,
             surface: parameters.surface,
-            boundary,
-        })?;
+            boundary: boundary.clone(),
+        });
+        let analysis = match &literal {
+            Some(published) => published.analyze(&analyzer)?,
+            None => analyzer.analyze(&AnalysisOptions {
+                eps: parameters.eps,
+                surface: parameters.surface,
+                boundary,
+            })?,
+        };
 
         let mut extra: Vec<usize> = Vec::new();
         let mut observer = std::mem::replace(&mut self.observer, Box::new(|_| {}));
@@ -419,25 +437,35 @@ impl<S: Scalar> Pipeline<S> {
             clock.enter(Stage::Landmarks);
             observer(Stage::Landmarks);
             let mut analysis = analysis.clone();
-            let stratification = stratify(
-                &analyzer,
-                &mut analysis,
-                self.metric.as_deref(),
-                self.selector.as_ref(),
-                &StratifyOptions {
-                    dl: parameters.dl,
-                    tri_eps: parameters.chart_radius(),
-                    seed: parameters.seed,
-                    extra: extra.clone(),
-                },
-            )?;
+            let stratification = match &literal {
+                Some(published) => published.stratify(
+                    &analyzer,
+                    &analysis,
+                    self.metric.as_deref(),
+                    self.selector.as_ref(),
+                    self.chart.as_ref(),
+                )?,
+                None => stratify(
+                    &analyzer,
+                    &mut analysis,
+                    self.metric.as_deref(),
+                    self.selector.as_ref(),
+                    &StratifyOptions {
+                        dl: parameters.dl,
+                        tri_eps: parameters.chart_radius(),
+                        seed: parameters.seed,
+                        extra: extra.clone(),
+                    },
+                )?,
+            };
             clock.enter(Stage::Triangulation);
             observer(Stage::Triangulation);
             let triangulation = self.triangulator().triangulate(&stratification.waist)?;
             let before = extra.len();
             // What cannot be triangulated is not mended by more landmarks.
             let sound = triangulation.incomplete.len() * 100 <= stratification.rows.len();
-            if sound && clock.rounds(Stage::Triangulation) <= REFINEMENTS {
+            let rounds = clock.rounds(Stage::Triangulation);
+            if sound && literal.is_none() && rounds <= REFINEMENTS {
                 add_where_astray(
                     &oracle,
                     &analysis,
@@ -481,7 +509,7 @@ impl<S: Scalar> Pipeline<S> {
             .count();
         let report = Report {
             version: env!("CARGO_PKG_VERSION"),
-            points: cloud.len() + duplicates,
+            points: whole.len(),
             dimension: cloud.dimension(),
             duplicates,
             mean_neighbors: analysis.mean_neighbors,
@@ -513,12 +541,22 @@ impl<S: Scalar> Pipeline<S> {
     }
 
     fn triangulator(&self) -> Triangulator<'_> {
+        let literal = self.parameters.method == Method::Paper;
         Triangulator {
             chart: self.chart.as_ref(),
             test: self.test.as_ref(),
-            rule: self.rule.as_ref(),
+            rule: if literal {
+                &MinimumCircumradius
+            } else {
+                self.rule.as_ref()
+            },
             largest_circumradius: f64::INFINITY,
-            repair: true,
+            repair: !literal,
+            rules: if literal {
+                Rules::PAPER
+            } else {
+                Rules::MEASURED
+            },
         }
     }
 

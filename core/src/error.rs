@@ -61,10 +61,10 @@ pub enum Error {
         /// The parameter to change.
         parameter: &'static str,
     },
-    /// Neighborhoods whose dimension is neither that of a surface nor that of a crossing.
+    /// Too many neighborhoods that are neither 2-dimensional nor explained by a singularity model.
     #[error(
-        "{count} points have a local dimension other than 2 or 3 (first: point {point}, dimension {dimension}): \
-         {parameter} does not fit the data"
+        "the neighborhoods of {count} points look like no surface and no crossing \
+         (first: point {point}, local dimension {dimension}): change {parameter}"
     )]
     Dimension {
         /// The first such point.

@@ -36,8 +36,8 @@ pub trait NeighborhoodOracle: Sync {
     /// `out`, whose former content is dropped.
     fn within(&self, center: usize, radius: Self::Scalar, out: &mut Vec<Neighbor<Self::Scalar>>);
 
-    /// Writes the `count` points nearest to `center`, itself first, into `out`; fewer
-    /// when there are fewer.
+    /// Writes the `count` points nearest to `center`, itself and its copies among them, into
+    /// `out`; fewer when there are fewer.
     fn nearest(&self, center: usize, count: usize, out: &mut Vec<Neighbor<Self::Scalar>>);
 
     /// The same two queries about a place that need not be a point of the set, where the

@@ -65,7 +65,7 @@ pub struct ParameterArguments {
     )]
     pub dt: f64,
 
-    /// Tolerance of the fit of two sheets, unit of the data: the mean distance of the points to the nearer one
+    /// Tolerance of the fit of two sheets, unit of the data: the root mean squared distance of the points to the nearer one
     /// [default: eps / 5]
     #[arg(long, visible_alias = "fit-tolerance", value_name = "T", value_parser = positive)]
     pub dp: Option<f64>,

@@ -73,9 +73,11 @@ pub struct Analysis {
     pub radii: Vec<f64>,
     /// For points on curves, which model.
     pub model: Vec<u8>,
+    /// For points on curves, how many cells meet there.
+    pub cells: Vec<u8>,
     /// Mean number of points in a neighborhood; 0 where `surface` was set.
     pub mean_neighbors: f64,
-    /// Points of dimension 3 or more.
+    /// Points whose neighborhood is not 2-dimensional.
     pub candidates: usize,
     /// Points whose neighborhood no model explained at any radius.
     pub unexplained: Vec<usize>,
@@ -91,6 +93,7 @@ pub(super) struct Witness {
     pub(super) offset: f64,
     pub(super) radius: f64,
     pub(super) model: u8,
+    pub(super) cells: u8,
 }
 
 impl Analysis {
@@ -106,6 +109,7 @@ impl Analysis {
                 self.offsets[i] = w.offset;
                 self.radii[i] = w.radius;
                 self.model[i] = w.model;
+                self.cells[i] = w.cells;
                 self.roles[i] = if boundary { Role::Corner } else { Role::Curve };
             }
         }
@@ -140,6 +144,7 @@ impl Analysis {
             self.offsets[w.row] = w.offset;
             self.radii[w.row] = w.radius;
             self.model[w.row] = w.model;
+            self.cells[w.row] = w.cells;
             filled += 1;
         }
         filled
@@ -218,6 +223,7 @@ impl<S: Scalar> Analyzer<'_, S> {
             offsets: vec![0.0; n],
             radii: vec![0.0; n],
             model: vec![0; n],
+            cells: vec![0; n],
             mean_neighbors: 0.0,
             candidates: 0,
             unexplained: Vec::new(),
@@ -286,7 +292,13 @@ impl<S: Scalar> Analyzer<'_, S> {
         out
     }
 
-    fn point(&self, i: usize, eps: f64, scratch: &mut Scratch<S>) -> Result<Found, Error> {
+    /// Number of points in the neighborhood of `i` and its dimension.
+    pub(super) fn dimension_at(
+        &self,
+        i: usize,
+        eps: f64,
+        scratch: &mut Scratch<S>,
+    ) -> Result<(usize, u8), Error> {
         let enough = |found: usize| {
             if found >= LEAST_NEIGHBORS {
                 return Ok(found);
@@ -327,7 +339,11 @@ impl<S: Scalar> Analyzer<'_, S> {
                 (found, estimate.dimension)
             }
         };
-        let dimension = dimension.min(255) as u8;
+        Ok((neighbors, dimension.min(255) as u8))
+    }
+
+    fn point(&self, i: usize, eps: f64, scratch: &mut Scratch<S>) -> Result<Found, Error> {
+        let (neighbors, dimension) = self.dimension_at(i, eps, scratch)?;
         let kind = match dimension {
             2 => Kind::Regular,
             0 | 1 => Kind::Unexplained,
@@ -388,6 +404,7 @@ impl<S: Scalar> Analyzer<'_, S> {
                     offset: fit.center_offset,
                     radius,
                     model: m as u8,
+                    cells: fit.cells_at_curve.first().copied().unwrap_or(0),
                 };
                 return if on_curve {
                     Kind::Singular(witness)

@@ -33,12 +33,6 @@ const STRETCH_STEP: f64 = 0.025;
 /// Longest edge, landmarks and edges of a chain.
 type Laid = (f64, Vec<usize>, Vec<(usize, usize)>);
 
-/// One kind of curve.
-struct Kind {
-    role: Role,
-    cells: u8,
-}
-
 impl Curves {
     pub(super) fn new<S: Scalar>(analyzer: &Analyzer<'_, S>, analysis: &Analysis, dl: f64) -> Self {
         let mut out = Self::default();
@@ -46,17 +40,8 @@ impl Curves {
         out.corner_references = references(analyzer, analysis, &corners);
         out.rows = corners;
         out.corners = out.rows.len();
-        for kind in [
-            Kind {
-                role: Role::Boundary,
-                cells: 1,
-            },
-            Kind {
-                role: Role::Curve,
-                cells: 4,
-            },
-        ] {
-            out.lay(analyzer, analysis, dl, &kind);
+        for kind in [Role::Boundary, Role::Curve] {
+            out.lay(analyzer, analysis, dl, kind);
         }
         out.join_free_ends(analysis, dl);
         out.edges.sort_unstable();
@@ -69,12 +54,12 @@ impl Curves {
         analyzer: &Analyzer<'_, S>,
         analysis: &Analysis,
         dl: f64,
-        kind: &Kind,
+        kind: Role,
     ) {
         let places = &analysis.places;
         let distance =
             |a: usize, b: usize| squared_distance(places.point(a), places.point(b)).sqrt();
-        let mut rows = thin(analyzer, analysis, NODE_SPACING * dl, |r| r == kind.role);
+        let mut rows = thin(analyzer, analysis, NODE_SPACING * dl, |r| r == kind);
         let label = |row: usize| -> Option<(usize, u8)> {
             self.corner_references
                 .iter()
@@ -90,7 +75,7 @@ impl Curves {
             self.rows[..self.corners]
                 .iter()
                 .all(|&c| distance(c, row) > NODE_SPACING * dl)
-                && (kind.role == Role::Curve
+                && (kind == Role::Curve
                     || label(row).is_none_or(|(k, l)| {
                         self.corner_references[k].is_cell(l)
                             || distance(self.corner_references[k].row, row) > dl
@@ -99,7 +84,7 @@ impl Curves {
         let labels: Vec<Option<(usize, u8)>> = rows
             .iter()
             .map(|&row| {
-                if kind.role == Role::Boundary {
+                if kind == Role::Boundary {
                     label(row)
                 } else {
                     None
@@ -144,7 +129,7 @@ impl Curves {
                 if d > JOIN * dl {
                     continue;
                 }
-                let branch = match (kind.role, labels[k]) {
+                let branch = match (kind, labels[k]) {
                     (Role::Boundary, Some((_, l))) => l,
                     (Role::Boundary, None) => continue,
                     _ => 0,
@@ -176,7 +161,7 @@ impl Curves {
         &mut self,
         analysis: &Analysis,
         dl: f64,
-        kind: &Kind,
+        kind: Role,
         rows: &[usize],
         graph: &[Vec<(usize, f64)>],
         component: &[usize],
@@ -236,6 +221,17 @@ impl Curves {
         let Some((_, chosen, edges)) = best else {
             return;
         };
+        let cells = match kind {
+            Role::Boundary => 1,
+            // What most points of the curve say.
+            _ => {
+                let mut votes = [0usize; 256];
+                for &k in component {
+                    votes[analysis.cells[rows[k]] as usize] += 1;
+                }
+                (0..=255).max_by_key(|&c| votes[c as usize]).unwrap_or(0)
+            }
+        };
         self.rows.extend(chosen.iter().map(|&k| rows[k]));
         let position = |k: usize| {
             if k >= first_corner {
@@ -249,7 +245,7 @@ impl Curves {
             self.edges.push(CurveEdge::new(
                 position(a) as u32,
                 position(b) as u32,
-                kind.cells,
+                cells,
             ));
         }
     }

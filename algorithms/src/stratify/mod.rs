@@ -3,7 +3,9 @@
 mod analysis;
 mod cells;
 mod chains;
+mod paper;
 mod waist;
 
 pub use analysis::{Analysis, AnalysisOptions, Analyzer, Dimensions, Role};
+pub use paper::Published;
 pub use waist::{Stratification, StratifyCounts, StratifyOptions, stratify};

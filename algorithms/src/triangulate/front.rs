@@ -1,5 +1,6 @@
 //! The advancing front: which star is closed next, and what happens when one cannot be.
 
+use super::Rules;
 use super::star::Patch;
 use crosscap_core::{
     CompatibilityTest, Complex, CurveEdge, Error, LocalChart, Scalar, StratifiedLandmarks,
@@ -21,6 +22,8 @@ pub struct Triangulator<'a> {
     /// Whether stars that cannot be closed are repaired; without it the first one ends the
     /// triangulation, as in the paper.
     pub repair: bool,
+    /// What a triangle must satisfy beside being compatible.
+    pub rules: Rules,
 }
 
 /// A star that stayed open.
@@ -326,6 +329,10 @@ impl<S: Scalar> Run<'_, '_, S> {
                     continue;
                 }
                 if !self.visit_or_undo(k)? && !self.mend(v, k, false)? {
+                    if !self.front.parts.repair {
+                        self.incomplete.push(Incomplete { landmark: v });
+                        return Ok(());
+                    }
                     open.push((v, k));
                 }
                 self.done[v as usize] = true;
@@ -344,7 +351,12 @@ impl<S: Scalar> Run<'_, '_, S> {
         }
         // Stars of curve landmarks, which no visit of a cell has to close.
         let mut curve_open = Vec::new();
-        for _ in 0..CURVE_PASSES {
+        let passes = if self.front.parts.rules.curve_stars {
+            CURVE_PASSES
+        } else {
+            0
+        };
+        for _ in 0..passes {
             curve_open.clear();
             let before = self.counts.repairs;
             for v in 0..count as u32 {

@@ -2,6 +2,8 @@
 
 mod front;
 mod rule;
+mod rules;
 mod star;
 pub use front::{Incomplete, Triangulation, TriangulationCounts, Triangulator};
 pub use rule::{LargestAngle, MinimumCircumradius};
+pub use rules::Rules;

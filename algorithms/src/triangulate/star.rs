@@ -229,12 +229,15 @@ impl<'a> Patch<'a> {
     /// Whether the edge of members `a`, `b` could be part of another triangle of this chart.
     fn joinable<S: Scalar>(&self, front: &Front<'_, S>, a: usize, b: usize) -> bool {
         let (u, v) = (self.members[a], self.members[b]);
+        let rules = front.parts.rules;
         let total = front.count(u, v);
         match front.cells(u, v) {
-            Some(cells) => total < cells as usize && self.across(u, v).next().is_none(),
+            Some(cells) => {
+                !rules.edge_counts || total < cells as usize && self.across(u, v).next().is_none()
+            }
             None => {
-                total < 2
-                    && !front.shortcut(u, v)
+                (!rules.edge_counts || total < 2)
+                    && (!rules.shortcuts || !front.shortcut(u, v))
                     && self.walls.iter().all(|&(c, d)| !self.crosses(a, b, c, d))
             }
         }
@@ -264,6 +267,10 @@ impl<'a> Patch<'a> {
         let way = turn(places[0], places[1], places[2]);
         let b = bounds(&places);
         for (k, &p) in self.places.iter().enumerate() {
+            // An edge of a curve that ends inside makes the triangle incompatible by any rules.
+            if !front.parts.rules.empty && !self.walls.iter().any(|w| w.0 == k || w.1 == k) {
+                continue;
+            }
             if at.contains(&k) || p[0] < b[0] || p[0] > b[2] || p[1] < b[1] || p[1] > b[3] {
                 continue;
             }
