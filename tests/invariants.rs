@@ -8,7 +8,7 @@ use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
 use crosscap_algorithms::singularity::TwoPlanes;
 use crosscap_algorithms::stratify::{
-    AnalysisOptions, Analyzer, Stratification, StratifyOptions, stratify,
+    AnalysisOptions, Analyzer, Dimensions, Stratification, StratifyOptions, stratify,
 };
 use crosscap_algorithms::surfaces::{Random, RigidMotion, embed, scaled};
 use crosscap_backends::euclidean::EuclideanOracle;
@@ -305,7 +305,7 @@ fn waist_of(
         cloud: &case.points,
         metric: &Euclidean::new(case.points.clone()),
         oracle,
-        estimator: &PrincipalComponents::new(p.dt).unwrap(),
+        dimensions: Dimensions::Estimator(&PrincipalComponents::new(p.dt).unwrap()),
         models: &models,
         execute: &Serial,
     };

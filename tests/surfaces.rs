@@ -398,7 +398,7 @@ fn neighborhoods_far_too_large_are_refused_or_harmless() {
 // Measured: still at work after two minutes, whatever the size of the cloud. The repairs at a crossing that
 // nobody looked for have no end worth waiting for; a limit on them would let this test run.
 #[test]
-#[ignore = "the triangulation does not give up in reasonable time"]
+
 fn crossing_sheets_taken_as_one_surface_are_refused() {
     let spheres = SampleSurface::find("two_spheres").unwrap();
     let sample = spheres.sample(&Sampling::new(6_000, 5)).unwrap();

@@ -47,9 +47,9 @@ pub struct ParameterArguments {
     #[arg(long, visible_alias = "epsilon", value_name = "E", value_parser = positive)]
     pub eps: f64,
 
-    /// Radius of a chart in the triangulation, unit of the data
+    /// Largest radius of a chart in the triangulation, unit of the data
     ///
-    /// Left out: what measurements say works for the method (3 dl for cells, eps for paper). Must be larger than dl.
+    /// Charts reach 3 dl, or this where it is smaller (method paper: this, or eps when left out). Must be larger than dl.
     #[arg(long, visible_alias = "triangulation-epsilon", value_name = "E", value_parser = positive)]
     pub tri_eps: Option<f64>,
 
