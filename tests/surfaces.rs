@@ -395,18 +395,10 @@ fn neighborhoods_far_too_large_are_refused_or_harmless() {
     }
 }
 
-// Measured: still at work after two minutes, whatever the size of the cloud. The repairs at a crossing that
-// nobody looked for have no end worth waiting for; a limit on them would let this test run.
+// No triangulation fits a crossing that nobody looked for: the limit on repairs ends it.
 #[test]
-
 fn crossing_sheets_taken_as_one_surface_are_refused() {
     let spheres = SampleSurface::find("two_spheres").unwrap();
     let sample = spheres.sample(&Sampling::new(6_000, 5)).unwrap();
-    for seed in 0..1 {
-        let parameters = Parameters {
-            seed,
-            ..Parameters::new(0.4, 0.3).surface()
-        };
-        assert_refused(&sample.points, parameters);
-    }
+    assert_refused(&sample.points, Parameters::new(0.4, 0.3).surface());
 }

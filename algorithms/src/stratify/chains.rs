@@ -118,15 +118,31 @@ impl Curves {
                 }
             }
         }
-        // Corners are nodes behind the others, each joined to the nearest node of every branch.
         let first_corner = rows.len();
+        let mut part = vec![usize::MAX; rows.len()];
+        let mut parts = Vec::new();
+        let mut seen = vec![false; rows.len()];
+        for start in 0..rows.len() {
+            if !seen[start] {
+                let members = component(&graph, start, first_corner, &mut seen);
+                members.iter().for_each(|&k| part[k] = parts.len());
+                parts.push(members);
+            }
+        }
+        // Corners are nodes behind the others, each joined to the nearest node of every branch. A
+        // part of a curve that does not reach farther than dl from the corner is none: it has no room for
+        // a landmark, and would stand between the corner and its curve.
         for c in 0..self.corners {
             graph.push(Vec::new());
             let row = self.rows[c];
             let mut branches: Vec<(u8, usize, f64)> = Vec::new();
+            let stub: Vec<bool> = parts
+                .iter()
+                .map(|members| members.iter().all(|&k| distance(row, rows[k]) < dl))
+                .collect();
             for (k, &other) in rows.iter().enumerate() {
                 let d = distance(row, other);
-                if d > JOIN * dl {
+                if d > JOIN * dl || stub[part[k]] {
                     continue;
                 }
                 let branch = match (kind, labels[k]) {
@@ -145,13 +161,8 @@ impl Curves {
                 graph[k].push((first_corner + c, d));
             }
         }
-        let mut seen = vec![false; graph.len()];
-        for start in 0..rows.len() {
-            if seen[start] {
-                continue;
-            }
-            let component = component(&graph, start, first_corner, &mut seen);
-            self.lay_component(analysis, dl, kind, &rows, &graph, &component, first_corner);
+        for members in &parts {
+            self.lay_component(analysis, dl, kind, &rows, &graph, members, first_corner);
         }
     }
 
