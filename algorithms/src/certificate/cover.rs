@@ -212,7 +212,7 @@ pub(super) fn check(
         })
     };
     let away_limit = limits.mesh_to_points + noise + report.point_gap;
-    let off_limit = limits.mesh_to_points + noise;
+    let off_limit = limits.off_plane + noise;
     let (mut values, mut off_values) = (Vec::new(), Vec::new());
     let (mut far, mut off) = (Vec::new(), Vec::new());
     for v in 0..mesh.complex.vertices {

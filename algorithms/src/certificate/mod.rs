@@ -75,9 +75,11 @@ pub struct Limits {
     /// of a missing star of triangles is about dl away.
     pub points_to_mesh: f64,
     /// Greatest distance of a place of the mesh to the input points, in dl, beyond the
-    /// estimated gap of the points; and greatest distance of the nearest point to the
-    /// triangle's plane.
+    /// estimated gap of the points.
     pub mesh_to_points: f64,
+    /// Greatest distance of the point nearest to a place of the mesh from the plane of the triangle, in
+    /// dl. An edge of 1.9 dl over a bend of radius dl is about that far off.
+    pub off_plane: f64,
     /// Greatest number of unused landmarks, as a part of the number of vertices.
     pub unused_landmarks: f64,
     /// How many input points are looked up in the mesh at most; picked evenly and always alike.
@@ -97,7 +99,8 @@ impl Default for Limits {
             zero_area: 1e-7,
             min_angle: 0.1,
             points_to_mesh: 0.75,
-            mesh_to_points: 0.75,
+            mesh_to_points: 0.5,
+            off_plane: 0.7,
             unused_landmarks: 0.01,
             points_tested: 200_000,
         }
@@ -156,6 +159,7 @@ impl CertificateOptions<'_> {
             ("min_angle", l.min_angle),
             ("points_to_mesh", l.points_to_mesh),
             ("mesh_to_points", l.mesh_to_points),
+            ("off_plane", l.off_plane),
             ("unused_landmarks", l.unused_landmarks),
             ("noise", self.noise),
         ];
