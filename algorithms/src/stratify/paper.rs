@@ -37,7 +37,7 @@ use nalgebra::Vector3;
 /// use crosscap_algorithms::execute::Serial;
 /// use crosscap_algorithms::landmarks::RandomGreedy;
 /// use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
-/// use crosscap_algorithms::stratify::{Analyzer, Published};
+/// use crosscap_algorithms::stratify::{Analyzer, Dimensions, Published};
 /// use crosscap_core::PointCloud;
 /// let grid = (0..100).flat_map(|k| [f64::from(k % 10), f64::from(k / 10), 0.0]);
 /// let cloud = PointCloud::new(3, grid.collect())?;
@@ -45,8 +45,8 @@ use nalgebra::Vector3;
 /// let oracle = BruteForceOracle::new(&metric);
 /// let estimator = PrincipalComponents::new(0.05)?;
 /// let analyzer = Analyzer {
-///     cloud: &cloud, metric: &metric, oracle: &oracle, estimator: &estimator,
-///     models: &[], execute: &Serial,
+///     cloud: &cloud, metric: &metric, oracle: &oracle,
+///     dimensions: Dimensions::Estimator(&estimator), models: &[], execute: &Serial,
 /// };
 /// let method = Published {
 ///     eps: 3.0, tri_eps: 3.0, dp: 0.1, ep: 0.1, dl: 1.5, seed: 1, surface: false, boundary: vec![],
