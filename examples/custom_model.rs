@@ -158,6 +158,7 @@ impl SingularityModel for AlternatingPlanes {
             cells_at_curve: vec![4],
             residual,
             parameters: 6,
+            points: Vec::new(),
             center: moved.iter().copied().collect(),
             center_offset: (moved - center).norm(),
         })

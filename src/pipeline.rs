@@ -1,13 +1,15 @@
 //! From a point cloud to a verified surface: the parts put together with good defaults.
 
-use crosscap_algorithms::certificate::{Certificate, CertificateOptions, Verdict, certify};
+use crosscap_algorithms::certificate::{
+    Certificate, CertificateOptions, LinkKind, SpecialPoint, Verdict, certify,
+};
 use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::homology::{Homology, homology};
 use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::moments::MomentTree;
 use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::predicate::PlanarPredicate;
-use crosscap_algorithms::singularity::TwoPlanes;
+use crosscap_algorithms::singularity::ModelName;
 use crosscap_algorithms::stratify::{
     Analysis, AnalysisOptions, Analyzer, Dimensions, Published, Role, Stratification,
     StratifyCounts, StratifyOptions, stratify,
@@ -87,6 +89,8 @@ pub struct Parameters {
     pub surface: bool,
     /// Rows of points on the boundary.
     pub boundary: Vec<usize>,
+    /// Singularity models that compete, by name.
+    pub models: Vec<ModelName>,
     /// Which algorithm.
     pub method: Method,
     /// Number of threads, all processors when left out; changes no result.
@@ -106,6 +110,7 @@ impl Parameters {
             seed: 0,
             surface: false,
             boundary: Vec::new(),
+            models: vec![ModelName::TwoPlanes],
             method: Method::default(),
             threads: None,
         }
@@ -300,7 +305,11 @@ impl<S: Scalar> Pipeline<S> {
     pub fn new(parameters: Parameters) -> Result<Self, Error> {
         parameters.check()?;
         Ok(Self {
-            models: vec![Box::new(TwoPlanes::new(parameters.dp, parameters.ep)?)],
+            models: parameters
+                .models
+                .iter()
+                .map(|name| name.model(parameters.dp, parameters.ep))
+                .collect::<Result<_, _>>()?,
             estimator: None,
             selector: Box::new(RandomGreedy::new()),
             chart: Box::new(ClassicalScaling),
@@ -312,7 +321,7 @@ impl<S: Scalar> Pipeline<S> {
         })
     }
 
-    /// Singularity models that compete instead of two planes alone.
+    /// Singularity models that compete instead of those that the parameters name.
     pub fn models(mut self, models: Vec<Box<dyn SingularityModel>>) -> Self {
         self.models = models;
         self
@@ -428,6 +437,7 @@ impl<S: Scalar> Pipeline<S> {
                 eps: parameters.eps,
                 surface: parameters.surface,
                 boundary,
+                dt: parameters.dt,
             })?,
         };
 
@@ -498,7 +508,9 @@ impl<S: Scalar> Pipeline<S> {
                 points: Some(&points),
                 landmark_separation: Some(parameters.dl),
                 unused_landmarks: &unused,
-                closed: parameters.boundary.is_empty(),
+                special_points: &special_points(&mesh, &stratification, &rows),
+                closed: parameters.boundary.is_empty()
+                    && !self.models.iter().any(|m| m.finds_boundary()),
                 ..CertificateOptions::default()
             },
         );
@@ -735,6 +747,27 @@ fn mesh_of<S: Scalar>(
         analysis.places.select(&landmark_rows),
         landmark_rows.iter().map(|&r| rows[r] as i64).collect(),
     )
+}
+
+/// The vertices at points in which sheets meet and nothing else, with the link they must have.
+fn special_points<S: Scalar>(
+    mesh: &Mesh,
+    stratification: &Stratification<S>,
+    rows: &[usize],
+) -> Vec<SpecialPoint> {
+    stratification
+        .points
+        .iter()
+        .filter(|p| (p.curves, p.cells) == (0, 2))
+        .filter_map(|p| {
+            let row = rows[stratification.rows[p.landmark as usize]] as i64;
+            let vertex = mesh.point_index.iter().position(|&r| r == row)?;
+            Some(SpecialPoint {
+                vertex: vertex as u32,
+                link: LinkKind::IsolatedCrossing,
+            })
+        })
+        .collect()
 }
 
 /// The stars that stayed open, as errors.

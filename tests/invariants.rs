@@ -313,6 +313,7 @@ fn waist_of(
         eps: p.eps,
         surface: p.surface,
         boundary: p.boundary.clone(),
+        dt: p.dt,
     };
     let mut analysis = analyzer.analyze(&options).unwrap();
     let options = StratifyOptions {

@@ -7,7 +7,9 @@ use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::landmarks::{MaxMin, RandomGreedy};
 use crosscap_algorithms::metric::{BruteForceOracle, Euclidean, GivenDistances, Lifted};
 use crosscap_algorithms::predicate::PlanarPredicate;
-use crosscap_algorithms::singularity::{OneSheet, TwoPlanes};
+use crosscap_algorithms::singularity::{
+    Boundary, CurveThroughSheet, IsolatedCrossing, OneSheet, TriplePoint, TwoPlanes, YJunction,
+};
 use crosscap_algorithms::triangulate::{LargestAngle, MinimumCircumradius};
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
@@ -142,6 +144,43 @@ fn two_planes() {
     for model in [curved, refined, flat] {
         laws::model(&settings(), &model, &exact_to(1e-6, &instances::two_planes)).unwrap();
     }
+}
+
+#[test]
+fn boundary() {
+    let model = Boundary::new(0.1, 0.05).unwrap();
+    laws::model(&settings(), &model, &Instances::new(&instances::boundary)).unwrap();
+}
+
+#[test]
+fn y_junction() {
+    let model = YJunction::new(0.1, 0.05).unwrap();
+    laws::model(&settings(), &model, &exact_to(1e-6, &instances::y_junction)).unwrap();
+}
+
+#[test]
+fn triple_point() {
+    let model = TriplePoint::new(0.1, 0.05).unwrap();
+    let instances = Instances {
+        // Two thirds of them are the neighborhood, and the model asks for 48.
+        points: 150..=300,
+        ..exact_to(1e-6, &instances::triple_point)
+    };
+    laws::model(&settings(), &model, &instances).unwrap();
+}
+
+#[test]
+fn isolated_crossing() {
+    let model = IsolatedCrossing::new(0.1, 0.05).unwrap();
+    let instances = exact_to(1e-6, &instances::crossing_in_four_dimensions);
+    laws::model(&settings(), &model, &instances).unwrap();
+}
+
+#[test]
+fn curve_through_sheet() {
+    let model = CurveThroughSheet::new(0.1, 0.05).unwrap();
+    let instances = exact_to(1e-6, &instances::line_through_plane);
+    laws::model(&settings(), &model, &instances).unwrap();
 }
 
 #[test]

@@ -113,6 +113,24 @@ impl PrincipalFrame {
         self.mean.len()
     }
 
+    /// Smallest d such that less than the share `dt` of the variance lies outside d directions.
+    pub fn dimension(&self, dt: f64) -> usize {
+        let total: f64 = self.variances.iter().sum();
+        let mut rest = total;
+        let mut d = 0;
+        while d < self.variances.len() && rest >= dt * total && rest > 0.0 {
+            rest -= self.variances[d];
+            d += 1;
+        }
+        d
+    }
+
+    /// Whether the points spread beyond the first `d` directions: half as much as in the last of them.
+    pub fn spreads_beyond(&self, d: usize) -> bool {
+        let beyond: f64 = self.variances.iter().skip(d).sum();
+        d > 0 && beyond > 0.5 * self.variances.get(d - 1).copied().unwrap_or(0.0)
+    }
+
     /// Direction `k`.
     pub fn axis(&self, k: usize) -> &[f64] {
         let n = self.mean.len();

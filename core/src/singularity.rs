@@ -86,6 +86,22 @@ pub trait SingularityModel: Sync {
     /// Number of principal coordinates that the model works in (3 for two planes in space).
     fn local_dimension(&self) -> usize;
 
+    /// Whether the model is to be asked about neighborhoods of this local dimension; 3 and more
+    /// unless a model says otherwise.
+    ///
+    /// Where the dimension is 3 or more an answer must halve the residual of a single sheet to
+    /// be believed. Where it is 1 or 2 there is nothing to halve: a model that asks for such
+    /// neighborhoods must itself reject those that show no singularity.
+    fn applies_to(&self, dimension: usize) -> bool {
+        dimension > 2
+    }
+
+    /// Whether the curves of the model are boundaries: laid before the others, without cells to tell
+    /// apart, and corners where another curve meets them.
+    fn finds_boundary(&self) -> bool {
+        false
+    }
+
     /// Fits the model.
     ///
     /// # Errors

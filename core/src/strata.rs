@@ -31,9 +31,14 @@ pub struct Decomposition {
     pub residual: f64,
     /// Number of free parameters of the fit, what a comparison of models penalizes.
     pub parameters: usize,
-    /// The center moved onto the stratum it belongs to, in local coordinates.
+    /// Places of the strata of dimension 0, in the order of `strata`, in local coordinates; they may
+    /// lie outside of the neighborhood's sample but not outside of its ball.
+    pub points: Vec<Vec<f64>>,
+    /// The center moved onto the stratum it belongs to, in local coordinates; a center inside a cell
+    /// is moved onto the first curve, where there is one.
     pub center: Vec<f64>,
-    /// Distance of the unmoved center to the singular stratum.
+    /// Distance of the unmoved center to that place; infinite for a center inside a cell that
+    /// tells nothing about a curve.
     pub center_offset: f64,
 }
 
@@ -41,5 +46,13 @@ impl Decomposition {
     /// Dimension of the stratum that point `k` of the neighborhood lies in.
     pub fn dimension_of(&self, k: usize) -> u8 {
         self.strata[self.labels[k] as usize].dimension
+    }
+
+    /// Number of cells that meet in the curve that `label` names; `None` when it names no curve.
+    pub fn cells_at(&self, label: u8) -> Option<u8> {
+        let first = self.strata.iter().filter(|s| s.dimension == 0).count();
+        (self.strata.get(label as usize)?.dimension == 1)
+            .then(|| self.cells_at_curve.get(label as usize - first).copied())
+            .flatten()
     }
 }

@@ -255,6 +255,7 @@ pub fn paper_parameters(
         boundary,
         method: method.into(),
         threads,
+        ..Parameters::new(eps, paper.landmark_separation)
     }
 }
 

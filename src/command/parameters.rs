@@ -4,6 +4,8 @@ use super::failure::Failure;
 use super::number::{positive, share};
 use clap::{Args, ValueEnum};
 use crosscap::pipeline::{Method, Parameters};
+use crosscap_algorithms::singularity::ModelName;
+use crosscap_core::Error;
 
 /// Which algorithm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -90,6 +92,15 @@ pub struct ParameterArguments {
     #[arg(long)]
     pub surface: bool,
 
+    /// Singularity models that compete, separated by commas, or auto for all of them
+    ///
+    /// two-planes (a double curve), refined-two-planes (the same with the paper's equation 5), boundary (found, not
+    /// given), y-junction (three sheets on a curve), triple-point (three sheets crossing in a point), isolated-crossing
+    /// (two sheets of R^4 or more that have one point in common), curve (no surface around), curve-through-sheet,
+    /// curve-on-sheet. With --surface only boundary is looked for.
+    #[arg(long, value_name = "NAME,...", value_parser = models, default_value = "two-planes")]
+    pub models: Models,
+
     /// Algorithm
     #[arg(long, value_name = "NAME", value_enum, default_value_t)]
     pub method: MethodName,
@@ -135,10 +146,29 @@ impl ParameterArguments {
             seed: self.seed,
             surface: self.surface,
             boundary,
+            models: self.models.0.clone(),
             method: self.method.into(),
             threads: threads(self.threads),
         })
     }
+}
+
+/// Names of singularity models.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Models(pub Vec<ModelName>);
+
+fn models(text: &str) -> Result<Models, String> {
+    if text == "auto" {
+        return Ok(Models(ModelName::AUTO.to_vec()));
+    }
+    let mut names = Vec::new();
+    for name in text.split(',') {
+        let name: ModelName = name.trim().parse().map_err(|e: Error| e.to_string())?;
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    Ok(Models(names))
 }
 
 /// 0 stands for all processors.

@@ -35,6 +35,7 @@ impl SingularityModel for OneSheet {
             cells_at_curve: Vec::new(),
             residual: (sum / local.fitted as f64).sqrt(),
             parameters: 8,
+            points: Vec::new(),
             center: local.point(local.center).to_vec(),
             center_offset: f64::INFINITY,
         })

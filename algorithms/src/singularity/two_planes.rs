@@ -203,6 +203,9 @@ pub struct TwoPlanes {
 
 /// Share of the points that three of the four cells must hold.
 const LEAST_CELL_SHARE: f64 = 0.03;
+/// Greatest share of the points farther than ep from both sheets: more are a third sheet, which
+/// would bend the two that are fitted.
+const MOST_ASTRAY: f64 = 0.03;
 /// Farthest that a center is moved, as a share of the radius.
 const LARGEST_STEP: f64 = 0.6;
 /// Three cells have a point this close to the crossing, as a share of the radius.
@@ -307,6 +310,7 @@ impl SingularityModel for TwoPlanes {
         }
         let mut labels = vec![0u8; all.len()];
         let mut sum = 0.0;
+        let mut astray = 0usize;
         let mut held = [0usize; 5];
         for (k, ((label, x), &s)) in labels.iter_mut().zip(&all).zip(&sheet).enumerate() {
             let own = sheets[s as usize].signed_distance(x);
@@ -325,11 +329,12 @@ impl SingularityModel for TwoPlanes {
             };
             if k < count {
                 sum += own * own;
+                astray += usize::from(own.abs() > self.ep);
                 held[*label as usize] += 1;
             }
         }
         let residual = (sum / count as f64).sqrt();
-        if residual > self.dp {
+        if residual > self.dp || self.curved && astray as f64 > MOST_ASTRAY * count as f64 {
             return Err(Rejection::PoorFit {
                 residual,
                 limit: self.dp,
@@ -372,13 +377,18 @@ impl SingularityModel for TwoPlanes {
             cells_at_curve: vec![4],
             residual,
             parameters: 16,
+            points: Vec::new(),
             center: moved.iter().copied().collect(),
             center_offset,
         })
     }
 
     fn name(&self) -> &str {
-        "two-planes"
+        if self.refinement_rounds > 0 {
+            "refined-two-planes"
+        } else {
+            "two-planes"
+        }
     }
 }
 

@@ -16,9 +16,9 @@ pub enum Role {
     Regular,
     /// On a curve that a singularity model found.
     Curve,
-    /// On a given boundary.
+    /// On a boundary, given or found.
     Boundary,
-    /// On a given boundary and on a found curve: where a double curve ends.
+    /// At a point: where a found curve ends on a boundary, or a 0-stratum that a model found.
     Corner,
 }
 
@@ -31,6 +31,8 @@ pub struct AnalysisOptions {
     pub surface: bool,
     /// Rows that lie on the boundary.
     pub boundary: Vec<usize>,
+    /// Dimension tolerance dt at radii smaller than `eps`: share of variance (strict).
+    pub dt: f64,
 }
 
 /// The engines and models that the analysis is made with.
@@ -83,11 +85,14 @@ pub struct Analysis {
     pub unexplained: Vec<usize>,
     /// Points near a curve but not on it, with their place on it.
     pub(super) witnesses: Vec<Witness>,
+    /// Points whose neighborhood shows a 0-stratum, with its place.
+    pub(super) apexes: Vec<Witness>,
 }
 
-/// A point of a cell whose neighborhood shows a curve close by.
+/// A point whose neighborhood shows a curve or a 0-stratum close by.
 #[derive(Clone, Debug)]
 pub(super) struct Witness {
+    stratum: OnStratum,
     pub(super) row: usize,
     pub(super) place: Vec<f64>,
     pub(super) offset: f64,
@@ -106,45 +111,79 @@ impl Analysis {
             Kind::Singular(w) => {
                 let width = w.place.len();
                 places[i * width..(i + 1) * width].copy_from_slice(&w.place);
-                self.offsets[i] = w.offset;
-                self.radii[i] = w.radius;
-                self.model[i] = w.model;
-                self.cells[i] = w.cells;
-                self.roles[i] = if boundary { Role::Corner } else { Role::Curve };
+                self.enter(&w, boundary);
             }
         }
     }
 
+    /// Enters a point on a stratum of dimension 0 or 1, but for its place.
+    fn enter(&mut self, w: &Witness, boundary: bool) {
+        self.offsets[w.row] = w.offset;
+        // A boundary has one cell, and needs no labels to tell cells apart.
+        self.radii[w.row] = if w.stratum == OnStratum::Boundary {
+            0.0
+        } else {
+            w.radius
+        };
+        self.model[w.row] = w.model;
+        self.cells[w.row] = w.cells;
+        self.roles[w.row] = match w.stratum {
+            OnStratum::Point => Role::Corner,
+            OnStratum::Boundary => Role::Boundary,
+            OnStratum::Curve if boundary => Role::Corner,
+            OnStratum::Curve => Role::Curve,
+        };
+    }
+
     /// Turns witnesses into points on the curve where it has no points within `spacing`: a band
-    /// narrower than the spacing of the data leaves gaps in the curve. Returns how many.
+    /// narrower than the spacing of the data leaves gaps in the curve. In the same way points at
+    /// 0-strata that none is within `apart` of. Returns how many on curves.
     pub(super) fn fill_curves(
         &mut self,
         spacing: f64,
+        apart: f64,
         mut near: impl FnMut(usize, f64, &mut Vec<usize>),
     ) -> usize {
+        let mut apexes = std::mem::take(&mut self.apexes);
+        apexes.sort_by(|a, b| a.offset.total_cmp(&b.offset).then(a.row.cmp(&b.row)));
+        let mut rows = Vec::new();
+        let mut points: Vec<usize> = (0..self.roles.len())
+            .filter(|&i| self.roles[i] == Role::Corner)
+            .collect();
+        for w in apexes {
+            let covered = points
+                .iter()
+                .any(|&r| squared_distance(self.places.point(r), &w.place) < apart * apart);
+            if covered {
+                continue;
+            }
+            self.places.set_point(w.row, &w.place);
+            self.enter(&w, false);
+            points.push(w.row);
+        }
         let mut witnesses = std::mem::take(&mut self.witnesses);
         witnesses.sort_by(|a, b| a.offset.total_cmp(&b.offset).then(a.row.cmp(&b.row)));
         let slack = witnesses
             .last()
             .map_or(0.0, |w| w.offset)
             .max(self.offsets.iter().copied().fold(0.0, f64::max));
-        let mut rows = Vec::new();
         let mut filled = 0;
         for w in witnesses {
             near(w.row, spacing + w.offset + slack, &mut rows);
+            let own = if w.stratum == OnStratum::Boundary {
+                Role::Boundary
+            } else {
+                Role::Curve
+            };
             let covered = rows.iter().any(|&r| {
-                matches!(self.roles[r], Role::Curve | Role::Corner)
+                (self.roles[r] == own || self.roles[r] == Role::Corner)
                     && squared_distance(self.places.point(r), &w.place) < spacing * spacing
             });
             if covered || self.roles[w.row] != Role::Regular {
                 continue;
             }
             self.places.set_point(w.row, &w.place);
-            self.roles[w.row] = Role::Curve;
-            self.offsets[w.row] = w.offset;
-            self.radii[w.row] = w.radius;
-            self.model[w.row] = w.model;
-            self.cells[w.row] = w.cells;
+            self.enter(&w, false);
             filled += 1;
         }
         filled
@@ -163,18 +202,29 @@ const UNEXPLAINED_SHARE: f64 = 0.05;
 
 /// A point farther than this share of the radius from a curve says nothing about it.
 const WITNESS_REACH: f64 = 0.4;
+/// A point farther than this share of the radius from a 0-stratum does not stand for it.
+const APEX_REACH: f64 = 0.5;
 
 /// What one point turned out to be.
 struct Found {
     dimension: u8,
     neighbors: usize,
     kind: Kind,
+    apex: Option<Witness>,
 }
 enum Kind {
     Regular,
     Unexplained,
     Near(Witness),
     Singular(Witness),
+}
+
+/// Which kind of stratum a singular point is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum OnStratum {
+    Point,
+    Boundary,
+    Curve,
 }
 
 /// Buffers of one thread.
@@ -228,10 +278,12 @@ impl<S: Scalar> Analyzer<'_, S> {
             candidates: 0,
             unexplained: Vec::new(),
             witnesses: Vec::new(),
+            apexes: Vec::new(),
         };
-        if !options.surface {
+        let looked_at = !options.surface || self.models.iter().any(|m| m.finds_boundary());
+        if looked_at {
             let found = execute::map(self.execute, n, Scratch::default, |scratch, i| {
-                self.point(i, options.eps, scratch)
+                self.point(i, options, boundary[i], scratch)
             });
             let mut total = 0usize;
             for (i, found) in found.into_iter().enumerate() {
@@ -240,14 +292,16 @@ impl<S: Scalar> Analyzer<'_, S> {
                 out.dimensions[i] = found.dimension;
                 out.candidates += usize::from(found.dimension != 2);
                 out.take(i, found.kind, &mut places, boundary[i]);
+                out.apexes.extend(found.apex);
             }
             let again = self.beside_curves(&out, options.eps);
             let more = execute::map(self.execute, again.len(), Scratch::default, |scratch, k| {
-                self.explain(again[k], options.eps, scratch)
+                self.explain(again[k], 3, options, scratch)
             });
-            for (&i, kind) in again.iter().zip(more) {
+            for (&i, (kind, apex)) in again.iter().zip(more) {
                 if !matches!(kind, Kind::Unexplained) {
                     out.take(i, kind, &mut places, boundary[i]);
+                    out.apexes.extend(apex);
                 }
             }
             out.mean_neighbors = total as f64 / n.max(1) as f64;
@@ -342,85 +396,183 @@ impl<S: Scalar> Analyzer<'_, S> {
         Ok((neighbors, dimension.min(255) as u8))
     }
 
-    fn point(&self, i: usize, eps: f64, scratch: &mut Scratch<S>) -> Result<Found, Error> {
-        let (neighbors, dimension) = self.dimension_at(i, eps, scratch)?;
-        let kind = match dimension {
-            2 => Kind::Regular,
-            0 | 1 => Kind::Unexplained,
-            _ => self.explain(i, eps, scratch),
+    fn point(
+        &self,
+        i: usize,
+        options: &AnalysisOptions,
+        boundary: bool,
+        scratch: &mut Scratch<S>,
+    ) -> Result<Found, Error> {
+        let (neighbors, dimension) = if options.surface {
+            // Taken on trust: only a boundary is looked for.
+            (0, 2)
+        } else {
+            self.dimension_at(i, options.eps, scratch)?
+        };
+        let asked = self
+            .models
+            .iter()
+            .any(|m| m.applies_to(dimension.into()) && !(boundary && m.finds_boundary()));
+        let (kind, apex) = match dimension {
+            2 if !asked => (Kind::Regular, None),
+            2 => self.second_thought(i, options, boundary, scratch),
+            _ if !asked => (Kind::Unexplained, None),
+            _ => self.explain(i, dimension.into(), options, scratch),
         };
         Ok(Found {
             dimension,
             neighbors,
             kind,
+            apex,
+        })
+    }
+
+    /// What models say that ask for 2-dimensional neighborhoods.
+    fn second_thought(
+        &self,
+        i: usize,
+        options: &AnalysisOptions,
+        boundary: bool,
+        scratch: &mut Scratch<S>,
+    ) -> (Kind, Option<Witness>) {
+        let eps = options.eps;
+        let Some(view) = self.view(i, eps, eps, scratch) else {
+            return (Kind::Regular, None);
+        };
+        let mut best: Option<(f64, usize, Decomposition)> = None;
+        for (m, model) in self.models.iter().enumerate() {
+            let silent = if model.finds_boundary() {
+                boundary
+            } else {
+                options.surface
+            };
+            if silent || !model.applies_to(2) {
+                continue;
+            }
+            let local = self.local(&view, model.as_ref(), scratch);
+            if let Ok(fit) = model.decompose(&local) {
+                let score = score(&fit, eps);
+                if best.as_ref().is_none_or(|b| score < b.0) {
+                    best = Some((score, m, fit));
+                }
+            }
+        }
+        best.map_or((Kind::Regular, None), |(_, m, fit)| {
+            self.verdict(i, m, &fit, &view, scratch)
         })
     }
 
     /// Lets the models compete, at smaller and smaller radii: a radius at which the sheets
     /// bend too much for any model is too large there, whatever it is elsewhere.
-    fn explain(&self, i: usize, eps: f64, scratch: &mut Scratch<S>) -> Kind {
-        let mut radius = eps;
-        for _ in 0..=SHRINKS {
+    fn explain(
+        &self,
+        i: usize,
+        dimension: usize,
+        options: &AnalysisOptions,
+        scratch: &mut Scratch<S>,
+    ) -> (Kind, Option<Witness>) {
+        let mut radius = options.eps;
+        let mut dimension = dimension;
+        for shrunk in 0..=SHRINKS {
             let Some(view) = self.view(i, radius, radius, scratch) else {
                 break;
             };
+            if shrunk > 0 {
+                // A smaller ball of a crossing may pass for a sheet; models decide.
+                dimension = match view.frame.dimension(options.dt) {
+                    0 | 1 => 1,
+                    more => more.max(3),
+                };
+            }
             let plain = match OneSheet.decompose(&self.local(&view, &OneSheet, scratch)) {
                 Ok(fit) => fit.residual,
                 Err(_) => break,
             };
             let mut best: Option<(f64, usize, Decomposition)> = None;
             for (m, model) in self.models.iter().enumerate() {
+                if !model.applies_to(dimension) || model.finds_boundary() {
+                    continue;
+                }
+                if view.frame.spreads_beyond(model.local_dimension()) {
+                    continue;
+                }
                 let local = self.local(&view, model.as_ref(), scratch);
                 let Ok(fit) = model.decompose(&local) else {
                     continue;
                 };
                 let score = score(&fit, radius);
-                if fit.residual < GAIN * plain && best.as_ref().is_none_or(|b| score < b.0) {
+                // A line is as near to a sheet as to itself.
+                let better = dimension < 3 || fit.residual < GAIN * plain;
+                if better && best.as_ref().is_none_or(|b| score < b.0) {
                     best = Some((score, m, fit));
                 }
             }
             if let Some((_, m, fit)) = best {
-                let on_curve = fit.dimension_of(view.center) < 2;
-                if !on_curve && fit.center_offset > WITNESS_REACH * radius {
-                    return Kind::Regular;
-                }
-                let local = self.local(&view, self.models[m].as_ref(), scratch);
-                let shift: Vec<f64> = fit
-                    .center
-                    .iter()
-                    .zip(local.point(view.center))
-                    .map(|(a, b)| a - b)
-                    .collect();
-                let place = view
-                    .frame
-                    .lift_vector(&shift)
-                    .iter()
-                    .zip(self.cloud.point(i))
-                    .map(|(d, x)| x.as_f64() + d)
-                    .collect();
-                let witness = Witness {
-                    row: i,
-                    place,
-                    offset: fit.center_offset,
-                    radius,
-                    model: m as u8,
-                    cells: fit.cells_at_curve.first().copied().unwrap_or(0),
-                };
-                return if on_curve {
-                    Kind::Singular(witness)
-                } else {
-                    Kind::Near(witness)
-                };
+                return self.verdict(i, m, &fit, &view, scratch);
             }
-            if plain < FLAT * radius {
-                return Kind::Regular;
+            let curve = dimension == 1 && self.models.iter().any(|m| m.applies_to(1));
+            if !curve && plain < FLAT * radius {
+                return (Kind::Regular, None);
             }
             radius *= SHRINK;
             if scratch.near.len() < 2 * LEAST_NEIGHBORS {
                 break;
             }
         }
-        Kind::Unexplained
+        (Kind::Unexplained, None)
+    }
+
+    /// What a fit makes of the center of a neighborhood, and the 0-stratum it shows.
+    fn verdict(
+        &self,
+        i: usize,
+        model: usize,
+        fit: &Decomposition,
+        view: &View,
+        scratch: &mut Scratch<S>,
+    ) -> (Kind, Option<Witness>) {
+        let local = self.local(view, self.models[model].as_ref(), scratch);
+        let center = local.point(view.center);
+        let witness = |stratum: OnStratum, to: &[f64], offset: f64, cells: u8| {
+            let shift: Vec<f64> = to.iter().zip(center).map(|(a, b)| a - b).collect();
+            let place = view
+                .frame
+                .lift_vector(&shift)
+                .iter()
+                .zip(self.cloud.point(i))
+                .map(|(d, x)| x.as_f64() + d)
+                .collect();
+            Witness {
+                stratum,
+                row: i,
+                place,
+                offset,
+                radius: view.radius,
+                model: model as u8,
+                cells,
+            }
+        };
+        let apex = fit
+            .points
+            .iter()
+            .map(|p| (squared_distance(p, center).sqrt(), p))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|&(offset, _)| offset < APEX_REACH * view.radius)
+            .map(|(offset, p)| witness(OnStratum::Point, p, offset, 0));
+        let label = fit.labels[view.center];
+        let curve = if self.models[model].finds_boundary() {
+            OnStratum::Boundary
+        } else {
+            OnStratum::Curve
+        };
+        let moved = |stratum, cells| witness(stratum, &fit.center, fit.center_offset, cells);
+        let kind = match fit.dimension_of(view.center) {
+            0 => Kind::Singular(moved(OnStratum::Point, 0)),
+            1 => Kind::Singular(moved(curve, fit.cells_at(label).unwrap_or(0))),
+            _ if fit.center_offset > WITNESS_REACH * view.radius => Kind::Regular,
+            _ => Kind::Near(moved(curve, fit.cells_at_curve.first().copied().unwrap_or(0))),
+        };
+        (kind, apex)
     }
 
     /// The ball of radius `reach` around `i` in the frame of the ball of `radius`.

@@ -23,6 +23,21 @@ impl Reference {
         Some(self.labels[at].1)
     }
 
+    /// Whether `label` names a 0-stratum.
+    pub(super) fn is_point(&self, label: u8) -> bool {
+        self.fit.strata[label as usize].dimension == 0
+    }
+
+    /// Whether `label` names a curve.
+    pub(super) fn is_curve(&self, label: u8) -> bool {
+        self.fit.strata[label as usize].dimension == 1
+    }
+
+    /// Whether the model knows of 0-strata.
+    pub(super) fn has_points(&self) -> bool {
+        !self.fit.points.is_empty()
+    }
+
     /// Whether `label` names a cell.
     pub(super) fn is_cell(&self, label: u8) -> bool {
         self.fit.strata[label as usize].dimension == 2

@@ -2,6 +2,7 @@
 
 use super::analysis::{Analysis, Analyzer, Role};
 use super::cells::{Reference, references};
+use super::waist::PointStratum;
 use crosscap_core::{CurveEdge, Scalar, squared_distance};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -49,6 +50,23 @@ impl Curves {
         out
     }
 
+    /// The corners that models call 0-strata.
+    pub(super) fn points(&self) -> Vec<PointStratum> {
+        self.corner_references
+            .iter()
+            .filter(|r| r.has_points())
+            .filter_map(|r| {
+                let landmark = self.rows[..self.corners].iter().position(|&c| c == r.row)?;
+                let count = |d| r.fit.strata.iter().filter(|s| s.dimension == d).count();
+                Some(PointStratum {
+                    landmark: landmark as u32,
+                    curves: count(1),
+                    cells: count(2),
+                })
+            })
+            .collect()
+    }
+
     fn lay<S: Scalar>(
         &mut self,
         analyzer: &Analyzer<'_, S>,
@@ -75,22 +93,40 @@ impl Curves {
             self.rows[..self.corners]
                 .iter()
                 .all(|&c| distance(c, row) > NODE_SPACING * dl)
-                && (kind == Role::Curve
-                    || label(row).is_none_or(|(k, l)| {
-                        self.corner_references[k].is_cell(l)
-                            || distance(self.corner_references[k].row, row) > dl
-                    }))
+                && label(row).is_none_or(|(k, l)| {
+                    let corner = &self.corner_references[k];
+                    match kind {
+                        Role::Curve => !corner.is_point(l),
+                        _ => corner.is_cell(l) || distance(corner.row, row) > dl,
+                    }
+                })
         });
-        let labels: Vec<Option<(usize, u8)>> = rows
-            .iter()
-            .map(|&row| {
-                if kind == Role::Boundary {
-                    label(row)
-                } else {
-                    None
+        let labels: Vec<Option<(usize, u8)>> = if kind == Role::Boundary {
+            rows.iter().map(|&row| label(row)).collect()
+        } else {
+            let known: Vec<(usize, (usize, u8))> = rows
+                .iter()
+                .filter_map(|&row| Some((row, label(row)?)))
+                .filter(|&(_, (k, _))| self.corner_references[k].has_points())
+                .collect();
+            // Where the bands of two arcs run together, the nearest point that is on one arc alone decides.
+            let arc = |row: usize, (k, l): (usize, u8)| -> Option<(usize, u8)> {
+                if self.corner_references[k].is_curve(l) {
+                    return Some((k, l));
                 }
-            })
-            .collect();
+                known
+                    .iter()
+                    .filter(|&&(_, (j, m))| j == k && self.corner_references[j].is_curve(m))
+                    .min_by(|a, b| distance(a.0, row).total_cmp(&distance(b.0, row)))
+                    .map(|&(_, found)| found)
+            };
+            rows.iter()
+                .map(|&row| {
+                    let found = known.iter().find(|x| x.0 == row)?.1;
+                    arc(row, found)
+                })
+                .collect()
+        };
         let mut graph: Vec<Vec<(usize, f64)>> = vec![Vec::new(); rows.len()];
         let mut near = Vec::new();
         let mut at = vec![usize::MAX; analysis.roles.len()];
@@ -112,7 +148,9 @@ impl Curves {
                     continue;
                 }
                 let d = distance(row, x.index);
-                let parted = matches!((labels[k], labels[other]), (Some(a), Some(b)) if a.0 == b.0 && a.1 != b.1);
+                let parted = matches!((labels[k], labels[other]), (Some(a), Some(b)) if a.0 == b.0 && a.1 != b.1)
+                    || kind == Role::Curve
+                        && (analysis.cells[row] == 0) != (analysis.cells[x.index] == 0);
                 if d <= REACH * dl && !parted {
                     graph[k].push((other, d));
                 }
@@ -145,9 +183,15 @@ impl Curves {
                 if d > JOIN * dl || stub[part[k]] {
                     continue;
                 }
+                let at_points = self
+                    .corner_references
+                    .iter()
+                    .any(|r| r.row == row && r.has_points());
                 let branch = match (kind, labels[k]) {
                     (Role::Boundary, Some((_, l))) => l,
+                    (Role::Curve, Some((at, l))) if self.corner_references[at].row == row => l,
                     (Role::Boundary, None) => continue,
+                    (Role::Curve, _) if at_points => continue,
                     _ => 0,
                 };
                 match branches.iter_mut().find(|b| b.0 == branch) {

@@ -176,6 +176,7 @@ impl Published {
             mean_neighbors: total as f64 / n.max(1) as f64,
             unexplained,
             witnesses: Vec::new(),
+            apexes: Vec::new(),
         })
     }
 
@@ -349,6 +350,7 @@ impl Published {
                 neighborhoods,
                 distances,
             },
+            points: Vec::new(),
             rows,
         })
     }

@@ -39,6 +39,17 @@ pub struct StratifyCounts {
     pub mean_members: f64,
 }
 
+/// A landmark at a 0-stratum, with what meets there by the model that found it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PointStratum {
+    /// The landmark.
+    pub landmark: u32,
+    /// Number of curves that end there.
+    pub curves: usize,
+    /// Number of cells that have it at their rim.
+    pub cells: usize,
+}
+
 /// The waist, and what ties it to the points.
 #[derive(Clone, Debug)]
 pub struct Stratification<S> {
@@ -46,6 +57,8 @@ pub struct Stratification<S> {
     pub waist: StratifiedLandmarks<S>,
     /// Row of the input that each landmark stands for.
     pub rows: Vec<usize>,
+    /// The 0-strata that a model found.
+    pub points: Vec<PointStratum>,
     /// Counts for the report.
     pub counts: StratifyCounts,
 }
@@ -87,7 +100,8 @@ pub fn stratify<S: Scalar>(
     }
     let n = analysis.roles.len();
     let mut near = Vec::new();
-    analysis.fill_curves(2.0 * NODE_SPACING * options.dl, |row, radius, out| {
+    let gap = 2.0 * NODE_SPACING * options.dl;
+    analysis.fill_curves(gap, options.dl, |row, radius, out| {
         analyzer.oracle.within(row, S::of(radius), &mut near);
         out.clear();
         out.extend(near.iter().map(|x| x.index));
@@ -237,10 +251,11 @@ pub fn stratify<S: Scalar>(
     Ok(Stratification {
         waist: StratifiedLandmarks {
             strata,
-            curve_edges: curves.edges,
+            curve_edges: curves.edges.clone(),
             neighborhoods,
             distances,
         },
+        points: curves.points(),
         rows,
         counts,
     })
@@ -257,7 +272,7 @@ fn free_of_edges<S: Scalar>(
     let places = &analysis.places;
     let mut barred = vec![false; analysis.roles.len()];
     let mut near = Vec::new();
-    for e in &curves.edges {
+    for e in curves.edges.iter().filter(|e| e.cells > 0) {
         let [a, b] = e.ends.map(|k| curves.rows[k as usize]);
         let length = places.squared_distance(a, b);
         let slack = analysis.offsets[a];
@@ -323,7 +338,16 @@ impl Contacts {
                     .unwrap_or(std::cmp::Ordering::Equal)
                     .then(a.2.cmp(&b.2))
             });
-            for cell in cells.chunk_by(|a, b| a.0 == b.0) {
+            let mut touching: Vec<&[(u8, f64, u32)]> = cells.chunk_by(|a, b| a.0 == b.0).collect();
+            if let Some(r) = reference.filter(|_| landmark >= curves.corners) {
+                // A fit may know of cells that do not touch this curve: those are farther away.
+                let own = r.label(row).and_then(|l| r.fit.cells_at(l));
+                let count = own.unwrap_or(analysis.cells[row]);
+                touching.sort_by(|a, b| a[0].1.total_cmp(&b[0].1).then(a[0].0.cmp(&b[0].0)));
+                touching.truncate(count.into());
+                touching.sort_by_key(|cell| cell[0].0);
+            }
+            for cell in touching {
                 groups.push(ContactGroup {
                     landmark,
                     rows: cell.iter().take(CONTACTS).map(|x| x.2).collect(),

@@ -162,7 +162,9 @@ impl<'a> Patch<'a> {
         ends.dedup();
         let on_curve = front.input.strata[center as usize] < 2;
         if ends.is_empty() {
-            if on_curve {
+            // A curve that this cell does not touch asks for nothing; a point inside of it does.
+            let lone = front.curve[center as usize].iter().all(|c| c.1 == 0);
+            if on_curve && !(lone && front.input.strata[center as usize] == 0) {
                 return None;
             }
             // A fresh star starts from the nearest member that can be joined.

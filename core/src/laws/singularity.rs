@@ -157,6 +157,15 @@ fn well_formed(d: &Decomposition, points: usize, dimension: usize) -> Outcome {
         "{} numbers of cells for {curves} curves",
         d.cells_at_curve.len()
     );
+    let points = dimensions.iter().filter(|&&d| d == 0).count();
+    ensure!(
+        d.points.len() == points
+            && d.points
+                .iter()
+                .all(|p| p.len() == dimension && p.iter().all(|x| x.is_finite())),
+        "the places {:?} for {points} strata of dimension 0, in {dimension} coordinates",
+        d.points
+    );
     ensure!(
         d.residual >= 0.0 && d.residual.is_finite(),
         "the residual is {}",
@@ -588,6 +597,7 @@ mod tests {
                 cells_at_curve: vec![1],
                 residual,
                 parameters: 3,
+                points: Vec::new(),
                 center,
                 center_offset: f64::INFINITY,
             })

@@ -1,0 +1,188 @@
+//! The boundary of a surface, found where nobody names it.
+
+use super::envelope::Envelope;
+use super::patch::{PATCH_POINTS, QuadraticPatch};
+use super::tolerance::{Tolerance, at_least, vectors};
+use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+
+/// A sheet that ends in a curve.
+///
+/// Near a boundary the center of a neighborhood is off its middle. The sheet is laid out in its
+/// tangent plane, and the boundary is the lowest parabola that has all points on one side (a linear
+/// program in three unknowns). It is believed when the part of the ball beyond it, at the density of the
+/// points, would hold so many that their absence is no chance.
+///
+/// The curve runs through the outermost points, so it lies inside the true boundary by less than
+/// the spacing of the points. A boundary with corners sharper than a parabola is rounded.
+#[derive(Clone, Copy, Debug)]
+pub struct Boundary {
+    tolerance: Tolerance,
+}
+
+/// Least distance of the center from the middle of the neighborhood, as a share of the radius: it is
+/// 0.42 on a straight boundary.
+const LEAST_SHIFT: f64 = 0.2;
+/// Points that would have to lie beyond the boundary.
+const LEAST_MISSING: f64 = 10.0;
+/// Greatest curvature of the parabola, in units of one over the radius.
+const MOST_BEND: f64 = 3.0;
+/// Times that the parabola is fitted, each time upright over its own tangent.
+const ROUNDS: usize = 3;
+/// A point off the boundary tells where it is up to this many ep.
+const WITNESS_REACH: f64 = 3.0;
+/// Strips that the area beyond the boundary is summed over.
+const STRIPS: usize = 64;
+
+impl Boundary {
+    /// Model with fit tolerance `dp` (of the sheet) and curve tolerance `ep`, unit of the data: a
+    /// point nearer than `ep` to the boundary is on it.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless both are positive and finite.
+    pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
+        Ok(Self {
+            tolerance: Tolerance::new(dp, ep)?,
+        })
+    }
+}
+
+/// Coordinates in the tangent plane: along the boundary and outward from the center.
+struct Axes {
+    along: [f64; 2],
+    out: [f64; 2],
+    origin: [f64; 2],
+}
+
+impl Axes {
+    fn new(origin: [f64; 2], out: [f64; 2]) -> Self {
+        let length = out[0].hypot(out[1]);
+        let out = [out[0] / length, out[1] / length];
+        Self {
+            along: [-out[1], out[0]],
+            out,
+            origin,
+        }
+    }
+
+    fn plane(&self, x: &Vector3<f64>) -> [f64; 2] {
+        let d = [x.x - self.origin[0], x.y - self.origin[1]];
+        [
+            self.along[0] * d[0] + self.along[1] * d[1],
+            self.out[0] * d[0] + self.out[1] * d[1],
+        ]
+    }
+
+    fn back(&self, [t, v]: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k| self.origin[k] + t * self.along[k] + v * self.out[k])
+    }
+}
+
+/// Area of the disc of `radius` about the origin beyond the parabola.
+fn area_beyond(envelope: &Envelope, radius: f64) -> f64 {
+    let width = 2.0 * radius / STRIPS as f64;
+    (0..STRIPS)
+        .map(|k| {
+            let t = -radius + (k as f64 + 0.5) * width;
+            let half = (radius * radius - t * t).max(0.0).sqrt();
+            (half - envelope.at(t).clamp(-half, half)) * width
+        })
+        .sum()
+}
+
+impl SingularityModel for Boundary {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn applies_to(&self, dimension: usize) -> bool {
+        dimension == 2
+    }
+
+    fn finds_boundary(&self) -> bool {
+        true
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        at_least(PATCH_POINTS, local)?;
+        let count = local.fitted;
+        let center = Vector3::from_column_slice(local.point(local.center));
+        // The mean is the origin.
+        if center.x.hypot(center.y) < LEAST_SHIFT * local.radius {
+            return Err(Rejection::NoRealSolution);
+        }
+        let all: Vec<Vector3<f64>> = vectors(local);
+        let points = &all[..count];
+        let mut axes = Axes::new([center.x, center.y], [center.x, center.y]);
+        let upright = |axes: &Axes| {
+            let flat: Vec<[f64; 2]> = points.iter().map(|x| axes.plane(x)).collect();
+            Envelope::above(&flat, local.radius).ok_or(Rejection::NoRealSolution)
+        };
+        let mut envelope = upright(&axes)?;
+        for _ in 0..ROUNDS {
+            let slope = envelope.slope(envelope.foot([0.0, 0.0]));
+            let out = [0, 1].map(|k| axes.out[k] - slope * axes.along[k]);
+            axes = Axes::new(axes.origin, out);
+            envelope = upright(&axes)?;
+        }
+        if envelope.bend().abs() * local.radius > MOST_BEND {
+            return Err(Rejection::NoRealSolution);
+        }
+        let beyond = area_beyond(&envelope, local.radius);
+        let inside = PI * local.radius * local.radius - beyond;
+        let missing = count as f64 * beyond / inside.max(f64::MIN_POSITIVE);
+        if missing < LEAST_MISSING {
+            return Err(Rejection::EmptyStratum {
+                stratum: 0,
+                found: 0,
+            });
+        }
+        let mut sheet =
+            QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
+        if !sheet.fit(points.iter().copied(), local.radius) {
+            return Err(Rejection::NoRealSolution);
+        }
+        let sum = points
+            .iter()
+            .map(|x| sheet.signed_distance(x).powi(2))
+            .sum();
+        let residual = self.tolerance.residual(sum, count)?;
+        // Beyond the neighborhood the parabola is mere extrapolation.
+        let labels: Vec<u8> = all
+            .iter()
+            .enumerate()
+            .map(|(k, x)| {
+                let place = axes.plane(x);
+                let outside = k >= count && place[0].abs() > local.radius;
+                u8::from(outside || envelope.depth(place) >= self.tolerance.ep)
+            })
+            .collect();
+        let foot = envelope.foot([0.0, 0.0]);
+        let [x, y] = axes.back([foot, envelope.at(foot)]);
+        let below = Vector3::new(x, y, 0.0);
+        let place = Vector3::new(x, y, -sheet.height(&below).0);
+        let offset = (place - center).norm();
+        let (moved, center_offset) =
+            if labels[local.center] == 0 || offset < WITNESS_REACH * self.tolerance.ep {
+                (place, offset)
+            } else {
+                (center, f64::INFINITY)
+            };
+        Ok(Decomposition {
+            strata: [1, 2].map(|dimension| Stratum { dimension }).to_vec(),
+            labels,
+            continuations: Vec::new(),
+            cells_at_curve: vec![1],
+            residual,
+            parameters: 11,
+            points: Vec::new(),
+            center: moved.iter().copied().collect(),
+            center_offset,
+        })
+    }
+
+    fn name(&self) -> &str {
+        "boundary"
+    }
+}

@@ -1,0 +1,129 @@
+//! Singularity models by name.
+
+use super::{
+    BareCurve, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, TriplePoint, TwoPlanes,
+    YJunction,
+};
+use crosscap_core::{Error, SingularityModel};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// The models that come with the program.
+///
+/// ```
+/// use crosscap_algorithms::singularity::ModelName;
+/// let model = "triple-point".parse::<ModelName>()?.model(0.05, 0.02)?;
+/// assert_eq!(model.name(), "triple-point");
+/// # Ok::<(), crosscap_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModelName {
+    /// [`TwoPlanes`].
+    TwoPlanes,
+    /// [`TwoPlanes`] with the pair of planes refined by the paper's equation (5).
+    RefinedTwoPlanes,
+    /// [`Boundary`].
+    Boundary,
+    /// [`YJunction`].
+    YJunction,
+    /// [`TriplePoint`].
+    TriplePoint,
+    /// [`IsolatedCrossing`].
+    IsolatedCrossing,
+    /// [`BareCurve`].
+    Curve,
+    /// [`CurveThroughSheet`].
+    CurveThroughSheet,
+    /// [`CurveOnSheet`].
+    CurveOnSheet,
+}
+
+/// Rounds of the refinement by equation (5).
+const REFINEMENT_ROUNDS: usize = 20;
+
+impl ModelName {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::TwoPlanes,
+        Self::RefinedTwoPlanes,
+        Self::Boundary,
+        Self::YJunction,
+        Self::TriplePoint,
+        Self::IsolatedCrossing,
+        Self::Curve,
+        Self::CurveThroughSheet,
+        Self::CurveOnSheet,
+    ];
+
+    /// Those that compete where the user leaves the choice to the program.
+    pub const AUTO: [Self; 8] = [
+        Self::TwoPlanes,
+        Self::Boundary,
+        Self::YJunction,
+        Self::TriplePoint,
+        Self::IsolatedCrossing,
+        Self::Curve,
+        Self::CurveThroughSheet,
+        Self::CurveOnSheet,
+    ];
+
+    /// The name on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TwoPlanes => "two-planes",
+            Self::RefinedTwoPlanes => "refined-two-planes",
+            Self::Boundary => "boundary",
+            Self::YJunction => "y-junction",
+            Self::TriplePoint => "triple-point",
+            Self::IsolatedCrossing => "isolated-crossing",
+            Self::Curve => "curve",
+            Self::CurveThroughSheet => "curve-through-sheet",
+            Self::CurveOnSheet => "curve-on-sheet",
+        }
+    }
+
+    /// The model with fit tolerance `dp` and curve tolerance `ep`, unit of the data.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless both are positive and finite.
+    pub fn model(self, dp: f64, ep: f64) -> Result<Box<dyn SingularityModel>, Error> {
+        Ok(match self {
+            Self::TwoPlanes => Box::new(TwoPlanes::new(dp, ep)?),
+            Self::RefinedTwoPlanes => {
+                let mut model = TwoPlanes::new(dp, ep)?;
+                model.refinement_rounds = REFINEMENT_ROUNDS;
+                Box::new(model)
+            }
+            Self::Boundary => Box::new(Boundary::new(dp, ep)?),
+            Self::YJunction => Box::new(YJunction::new(dp, ep)?),
+            Self::TriplePoint => Box::new(TriplePoint::new(dp, ep)?),
+            Self::IsolatedCrossing => Box::new(IsolatedCrossing::new(dp, ep)?),
+            Self::Curve => Box::new(BareCurve::new(dp, ep)?),
+            Self::CurveThroughSheet => Box::new(CurveThroughSheet::new(dp, ep)?),
+            Self::CurveOnSheet => Box::new(CurveOnSheet::new(dp, ep)?),
+        })
+    }
+}
+
+impl fmt::Display for ModelName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for ModelName {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self, Error> {
+        Self::ALL
+            .into_iter()
+            .find(|m| m.name() == name)
+            .ok_or_else(|| Error::Parameter {
+                name: "models",
+                value: name.into(),
+                expected: format!("one of {}", Self::ALL.map(Self::name).join(", ")),
+            })
+    }
+}

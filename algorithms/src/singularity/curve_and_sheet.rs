@@ -1,0 +1,289 @@
+//! A curve that goes through a sheet, or ends on one.
+
+use super::curve_fit::{QuadraticCurve, STRAIGHT_POINTS};
+use super::flats::{Flat, candidates, greedy};
+use super::patch::{PATCH_POINTS, QuadraticPatch};
+use super::sheets::Sheets;
+use super::tolerance::{Tolerance, at_least, vectors};
+use super::vanishing::Vanishing;
+use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use nalgebra::Vector3;
+
+/// A curve that pierces a sheet: a point, two arcs without triangles, one cell.
+///
+/// Two quadrics vanish on a plane and a line, and at points of the plane their gradients are
+/// normal to it; the plane that most points lie near becomes a quadratic patch, the points
+/// off it a curve. The point is where the curve meets the patch, by Newton's method.
+#[derive(Clone, Copy, Debug)]
+pub struct CurveThroughSheet {
+    tolerance: Tolerance,
+}
+
+/// A curve that ends on a sheet: a point, one arc without triangles, one cell.
+///
+/// Fitted like [`CurveThroughSheet`]; the arc is on one side of the sheet.
+#[derive(Clone, Copy, Debug)]
+pub struct CurveOnSheet {
+    tolerance: Tolerance,
+}
+
+/// Points within this share of the radius of a plane belong to it while it is looked for.
+const PLANE_TOLERANCE: f64 = 0.1;
+/// Farthest that the point may be, as a share of the radius.
+const REACH: f64 = 0.95;
+/// Least sine of the angle between curve and sheet.
+const LEAST_SINE: f64 = 0.3;
+/// The sheet is fitted to points farther than this many ep from the curve.
+const CLEAR: f64 = 1.5;
+/// Fewest points of an arc.
+const LEAST_ARC: usize = 3;
+/// A curve is at least this many ep long.
+const LEAST_LENGTH: f64 = 3.0;
+
+impl CurveThroughSheet {
+    /// Model with fit tolerance `dp` and curve tolerance `ep`, unit of the data: a point nearer than
+    /// `ep` to both curve and sheet is where they meet.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless both are positive and finite.
+    pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
+        Ok(Self {
+            tolerance: Tolerance::new(dp, ep)?,
+        })
+    }
+}
+
+impl CurveOnSheet {
+    /// Model with fit tolerance `dp` and curve tolerance `ep`, unit of the data: a point nearer than
+    /// `ep` to both curve and sheet is where they meet.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless both are positive and finite.
+    pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
+        Ok(Self {
+            tolerance: Tolerance::new(dp, ep)?,
+        })
+    }
+}
+
+/// Sheet and curve of a neighborhood.
+struct Fit {
+    curve: QuadraticCurve,
+    /// Where they meet.
+    apex: Vector3<f64>,
+    residual: f64,
+    /// For each point 0 for the apex, 1 and 2 for the arcs below and above the sheet, 3 for the sheet.
+    labels: Vec<u8>,
+    /// Points off the sheet below and above.
+    arcs: [usize; 2],
+}
+
+/// Points farther than this share of the radius from the plane of most points tell that there is
+/// something beside one sheet.
+fn off_sheet(sheet: &QuadraticPatch, points: &[Vector3<f64>], limit: f64) -> Vec<Vector3<f64>> {
+    points
+        .iter()
+        .filter(|x| sheet.signed_distance(x).abs() > limit)
+        .copied()
+        .collect()
+}
+
+impl Fit {
+    fn new(local: &LocalPoints<'_>, tolerance: &Tolerance) -> Result<Self, Rejection> {
+        at_least(PATCH_POINTS + STRAIGHT_POINTS, local)?;
+        let (count, ep) = (local.fitted, tolerance.ep);
+        let all: Vec<Vector3<f64>> = vectors(local);
+        let points = &all[..count];
+        let whole = Flat::of(points.iter().copied()).ok_or(Rejection::NoRealSolution)?;
+        let flat = points
+            .iter()
+            .map(|x| whole.squared_distance(x))
+            .fold(0.0, f64::max)
+            .sqrt();
+        if flat < ep {
+            return Err(Rejection::SimplerModelFits {
+                residual: flat,
+                simpler: flat,
+            });
+        }
+        let quadrics =
+            Vanishing::fit(points, 2, 2, local.radius).ok_or(Rejection::NoRealSolution)?;
+        let mut found = candidates(points, |x, out| quadrics.gradients(x, out));
+        // With few points on the curve the gradients say little, but then the sheet holds nearly all.
+        found.push(whole);
+        for plane in &mut found {
+            plane.normals.truncate(1);
+        }
+        let plane = greedy(points, &found, 1, PLANE_TOLERANCE * local.radius)
+            .and_then(|mut planes| planes.pop())
+            .ok_or(Rejection::NoRealSolution)?;
+        let mut sheets = Sheets::new(&[plane], &all, 0, local.radius, |_, d, _| d);
+        let mut sheet = sheets.patches.swap_remove(0);
+        let mut curve: Option<QuadraticCurve> = None;
+        for _ in 0..3 {
+            // Points of the curve that are near the sheet would bend it.
+            let near: Vec<Vector3<f64>> = points
+                .iter()
+                .filter(|x| {
+                    let clear = |c: &QuadraticCurve| (c.foot(x) - **x).norm() > CLEAR * ep;
+                    sheet.signed_distance(x).abs() < ep && curve.as_ref().is_none_or(clear)
+                })
+                .copied()
+                .collect();
+            if !sheet.fit(near.iter().copied(), local.radius) {
+                return Err(Rejection::EmptyStratum {
+                    stratum: 3,
+                    found: near.len(),
+                });
+            }
+            let beside = off_sheet(&sheet, points, ep);
+            curve = Some(QuadraticCurve::fit(&beside).ok_or(Rejection::EmptyStratum {
+                stratum: 1,
+                found: beside.len(),
+            })?);
+        }
+        let beside = off_sheet(&sheet, points, ep);
+        let curve = curve.ok_or(Rejection::NoRealSolution)?;
+        let mut t = curve.parameter(&points[local.center]);
+        let mut height = f64::INFINITY;
+        for _ in 0..12 {
+            let x = curve.at(t);
+            let (value, gradient) = sheet.height(&x);
+            let slope = gradient.dot(&curve.tangent(t));
+            if slope.abs() < LEAST_SINE * gradient.norm() {
+                return Err(Rejection::NoRealSolution);
+            }
+            t -= value / slope;
+            height = value.abs();
+            if !t.is_finite() || t.abs() > 4.0 * local.radius {
+                return Err(Rejection::NoRealSolution);
+            }
+        }
+        let apex = curve.at(t);
+        if height > 1e-6 * local.radius
+            || (apex - points[local.center]).norm() > REACH * local.radius
+        {
+            return Err(Rejection::NoRealSolution);
+        }
+        let mut labels = vec![0u8; all.len()];
+        let mut arcs = [0usize; 2];
+        let mut sum = 0.0;
+        for (k, (x, label)) in all.iter().zip(&mut labels).enumerate() {
+            let to_sheet = sheet.signed_distance(x);
+            let to_curve = (curve.foot(x) - x).norm();
+            *label = if to_sheet.abs() < ep && to_curve < ep {
+                0
+            } else if to_sheet.abs() <= to_curve {
+                3
+            } else {
+                1 + u8::from(to_sheet > 0.0)
+            };
+            if k < count {
+                sum += to_sheet.abs().min(to_curve).powi(2);
+                if matches!(*label, 1 | 2) {
+                    arcs[usize::from(*label) - 1] += 1;
+                }
+            }
+        }
+        let lengths = beside.iter().map(|x| curve.parameter(x));
+        let span = lengths.clone().fold(f64::NEG_INFINITY, f64::max)
+            - lengths.fold(f64::INFINITY, f64::min);
+        if span < LEAST_LENGTH * ep {
+            return Err(Rejection::NoRealSolution);
+        }
+        Ok(Self {
+            curve,
+            apex,
+            residual: tolerance.residual(sum, count)?,
+            labels,
+            arcs,
+        })
+    }
+
+    fn into_decomposition(
+        self,
+        local: &LocalPoints<'_>,
+        arcs: u8,
+        relabel: [u8; 4],
+    ) -> Decomposition {
+        let center = Vector3::from_column_slice(local.point(local.center));
+        let place = match self.labels[local.center] {
+            0 => Some(self.apex),
+            1 | 2 => Some(self.curve.foot(&center)),
+            _ => None,
+        };
+        Decomposition {
+            strata: [0u8]
+                .into_iter()
+                .chain(std::iter::repeat_n(1, usize::from(arcs)))
+                .chain([2])
+                .map(|dimension| Stratum { dimension })
+                .collect(),
+            labels: self
+                .labels
+                .iter()
+                .map(|&l| relabel[usize::from(l)])
+                .collect(),
+            continuations: Vec::new(),
+            cells_at_curve: vec![0; usize::from(arcs)],
+            residual: self.residual,
+            parameters: 17,
+            points: vec![self.apex.iter().copied().collect()],
+            center: place.unwrap_or(center).iter().copied().collect(),
+            center_offset: place.map_or(f64::INFINITY, |p| (p - center).norm()),
+        }
+    }
+}
+
+impl SingularityModel for CurveThroughSheet {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn applies_to(&self, dimension: usize) -> bool {
+        (1..=3).contains(&dimension)
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        let fit = Fit::new(local, &self.tolerance)?;
+        if let Some(side) = (0..2).find(|&side| fit.arcs[side] < LEAST_ARC) {
+            return Err(Rejection::EmptyStratum {
+                stratum: 1 + side,
+                found: fit.arcs[side],
+            });
+        }
+        Ok(fit.into_decomposition(local, 2, [0, 1, 2, 3]))
+    }
+
+    fn name(&self) -> &str {
+        "curve-through-sheet"
+    }
+}
+
+impl SingularityModel for CurveOnSheet {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn applies_to(&self, dimension: usize) -> bool {
+        (1..=3).contains(&dimension)
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        let fit = Fit::new(local, &self.tolerance)?;
+        if fit.arcs[0].max(fit.arcs[1]) < LEAST_ARC {
+            return Err(Rejection::EmptyStratum {
+                stratum: 1,
+                found: fit.arcs[0].max(fit.arcs[1]),
+            });
+        }
+        if fit.arcs[0].min(fit.arcs[1]) >= LEAST_ARC {
+            return Err(Rejection::NoRealSolution);
+        }
+        Ok(fit.into_decomposition(local, 1, [0, 1, 1, 2]))
+    }
+
+    fn name(&self) -> &str {
+        "curve-on-sheet"
+    }
+}

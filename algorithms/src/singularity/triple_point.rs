@@ -1,0 +1,161 @@
+//! Three sheets that cross in a point.
+
+use super::flats::{candidates, greedy};
+use super::patch::PATCH_POINTS;
+use super::sheets::Sheets;
+use super::tolerance::{Tolerance, at_least, vectors};
+use super::vanishing::Vanishing;
+use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use nalgebra::{Matrix3, Vector3};
+
+/// Three sheets of space in general position: a triple point, from which six arcs of double
+/// curves start, with twelve cells between them.
+///
+/// The planes are those of the cubic that vanishes on the points, read off its gradients
+/// (generalized principal component analysis; Vidal, Ma, Sastry 2005), then each becomes a
+/// quadratic patch. The triple point is where the patches meet, by Newton's method.
+#[derive(Clone, Copy, Debug)]
+pub struct TriplePoint {
+    tolerance: Tolerance,
+}
+
+/// Points within this share of the radius of a plane belong to it while planes are looked for.
+const PLANE_TOLERANCE: f64 = 0.12;
+/// Least share of the points that a sheet must hold.
+const LEAST_SHEET_SHARE: f64 = 0.06;
+/// Least determinant of the three unit normals.
+const LEAST_DETERMINANT: f64 = 0.15;
+/// The triple point lies within this share of the radius.
+const REACH: f64 = 0.85;
+/// Cells that must hold points, of twelve.
+const LEAST_CELLS: usize = 8;
+
+/// Stratum of the arc on which sheet `k` is crossed by none: the curve of the two others, on
+/// the side of sheet k where its distance is negative or not.
+fn arc(k: usize, positive: bool) -> u8 {
+    1 + 2 * k as u8 + u8::from(positive)
+}
+
+/// Stratum of the cell of sheet `k` on the given sides of the two next sheets.
+fn cell(k: usize, first: bool, second: bool) -> u8 {
+    7 + 4 * k as u8 + 2 * u8::from(first) + u8::from(second)
+}
+
+impl TriplePoint {
+    /// Model with fit tolerance `dp` and curve tolerance `ep`, unit of the data: a point nearer than
+    /// `ep` to two sheets is on a double curve, to all three at the triple point.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless both are positive and finite.
+    pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
+        Ok(Self {
+            tolerance: Tolerance::new(dp, ep)?,
+        })
+    }
+}
+
+impl SingularityModel for TriplePoint {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        at_least(4 * PATCH_POINTS, local)?;
+        let count = local.fitted;
+        let ep = self.tolerance.ep;
+        let all: Vec<Vector3<f64>> = vectors(local);
+        let points = &all[..count];
+        let cubic =
+            Vanishing::fit(points, 3, 1, local.radius).ok_or(Rejection::NoRealSolution)?;
+        let found = candidates(points, |x, out| cubic.gradients(x, out));
+        let planes = greedy(points, &found, 3, PLANE_TOLERANCE * local.radius)
+            .ok_or(Rejection::NoRealSolution)?;
+        let normals = Matrix3::from_columns(&[
+            planes[0].normals[0],
+            planes[1].normals[0],
+            planes[2].normals[0],
+        ]);
+        if normals.determinant().abs() < LEAST_DETERMINANT {
+            return Err(Rejection::NoRealSolution);
+        }
+        let sheets = Sheets::new(&planes, &all, count, local.radius, |_, d, _| d);
+        let center = points[local.center];
+        let apex = sheets
+            .meet(&[0, 1, 2], 3, center, REACH * local.radius)
+            .ok_or(Rejection::NoRealSolution)?;
+
+        let mut labels = vec![0u8; all.len()];
+        let mut held = [0usize; 19];
+        let mut sum = 0.0;
+        for (k, (x, label)) in all.iter().zip(&mut labels).enumerate() {
+            let own = usize::from(sheets.owner[k]);
+            let others = [(own + 1) % 3, (own + 2) % 3];
+            let d = [0, 1, 2].map(|s| sheets.patches[s].signed_distance(x));
+            let on = others.map(|s| d[own].abs() < ep && d[s].abs() < ep);
+            *label = match on {
+                [true, true] => 0,
+                [true, false] => arc(others[1], d[others[1]] >= 0.0),
+                [false, true] => arc(others[0], d[others[0]] >= 0.0),
+                [false, false] => cell(own, d[others[0]] >= 0.0, d[others[1]] >= 0.0),
+            };
+            if k < count {
+                sum += d[own] * d[own];
+                held[usize::from(*label)] += 1;
+            }
+        }
+        let residual = self.tolerance.residual(sum, count)?;
+        let least = (LEAST_SHEET_SHARE * count as f64).max(PATCH_POINTS as f64 / 2.0);
+        for k in 0..3 {
+            let own: usize = held[usize::from(cell(k, false, false))..][..4].iter().sum();
+            if (own as f64) < least {
+                return Err(Rejection::EmptyStratum {
+                    stratum: usize::from(cell(k, false, false)),
+                    found: own,
+                });
+            }
+        }
+        if held[7..].iter().filter(|&&h| h > 0).count() < LEAST_CELLS {
+            let stratum = 7 + held[7..].iter().position(|&h| h == 0).unwrap_or(0);
+            return Err(Rejection::EmptyStratum { stratum, found: 0 });
+        }
+        let label = labels[local.center];
+        let (moved, center_offset) = match label {
+            0 => (apex, (apex - center).norm()),
+            1..=6 => {
+                let third = usize::from((label - 1) / 2);
+                let pair = [(third + 1) % 3, (third + 2) % 3];
+                let x = sheets
+                    .meet(&pair, 2, center, REACH * local.radius)
+                    .ok_or(Rejection::NoRealSolution)?;
+                (x, (x - center).norm())
+            }
+            _ => (center, f64::INFINITY),
+        };
+        let dimensions = [0u8].into_iter().chain([1; 6]).chain([2; 12]);
+        let continuations = (0..3)
+            .flat_map(|k| {
+                [false, true].into_iter().flat_map(move |side| {
+                    [
+                        (cell(k, false, side), cell(k, true, side)),
+                        (cell(k, side, false), cell(k, side, true)),
+                    ]
+                })
+            })
+            .collect();
+        Ok(Decomposition {
+            strata: dimensions.map(|dimension| Stratum { dimension }).collect(),
+            labels,
+            continuations,
+            cells_at_curve: vec![4; 6],
+            residual,
+            parameters: 24,
+            points: vec![apex.iter().copied().collect()],
+            center: moved.iter().copied().collect(),
+            center_offset,
+        })
+    }
+
+    fn name(&self) -> &str {
+        "triple-point"
+    }
+}

@@ -1,0 +1,208 @@
+//! Three sheets that end in one curve, as in soap films.
+
+use super::flats::{Flat, candidates, greedy};
+use super::patch::PATCH_POINTS;
+use super::sheets::Sheets;
+use super::tolerance::{Tolerance, at_least, vectors};
+use super::vanishing::Vanishing;
+use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use nalgebra::{Matrix3, Vector3};
+
+/// Three half sheets of space on a common curve, at any angles: a Y-junction.
+///
+/// Half planes on a line lie in three planes through it, and these are those of the cubic that
+/// vanishes on the points, read off its gradients (generalized principal component analysis; Vidal,
+/// Ma, Sastry 2005). Which half of a plane is there is seen from its points. Each half plane
+/// becomes a quadratic patch; the curve is where the patches meet.
+#[derive(Clone, Copy, Debug)]
+pub struct YJunction {
+    tolerance: Tolerance,
+}
+
+/// Points within this share of the radius of a plane belong to it while planes are looked for.
+const PLANE_TOLERANCE: f64 = 0.12;
+/// Greatest part of the normals along the curve, as a mean square: they lie in one plane.
+const MOST_ALONG: f64 = 0.05;
+/// Two sheets meet at this angle (sine) at least.
+const LEAST_SINE: f64 = 0.2;
+/// Greatest share of the points of a plane on the half that is not there.
+const MOST_BEYOND: f64 = 0.2;
+/// Least share of the points in each cell.
+const LEAST_CELL_SHARE: f64 = 0.04;
+/// Farthest that a center is moved, as a share of the radius.
+const LARGEST_STEP: f64 = 0.6;
+/// Each cell has a point this close to the junction, as a share of the radius.
+const SUPPORT_REACH: f64 = 0.6;
+/// A point off the curve tells where the curve is up to this many ep.
+const WITNESS_REACH: f64 = 3.0;
+
+impl YJunction {
+    /// Model with fit tolerance `dp` and curve tolerance `ep`, unit of the data: a point nearer than
+    /// `ep` to two of the sheets is on the curve.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless both are positive and finite.
+    pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
+        Ok(Self {
+            tolerance: Tolerance::new(dp, ep)?,
+        })
+    }
+}
+
+/// The line that three planes have in common, and the direction from it into each half plane.
+struct Book {
+    place: Vector3<f64>,
+    pages: [Vector3<f64>; 3],
+}
+
+impl Book {
+    /// `None` for planes that have no line in common, or of which both halves are there.
+    fn of(planes: &[Flat<3>], points: &[Vector3<f64>], tolerance: f64) -> Option<Self> {
+        let mut spread = Matrix3::zeros();
+        let mut right = Vector3::zeros();
+        for plane in planes {
+            let n = plane.normals[0];
+            spread += n * n.transpose();
+            right += n * n.dot(&plane.origin);
+        }
+        for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+            let sine = planes[a].normals[0].cross(&planes[b].normals[0]).norm();
+            if sine < LEAST_SINE {
+                return None;
+            }
+        }
+        let eigen = spread.symmetric_eigen();
+        let least = eigen.eigenvalues.imin();
+        if eigen.eigenvalues[least] > MOST_ALONG {
+            return None;
+        }
+        let along: Vector3<f64> = eigen.eigenvectors.column(least).into();
+        let mut place = Vector3::zeros();
+        for k in (0..3).filter(|&k| k != least) {
+            let axis = eigen.eigenvectors.column(k);
+            place += axis * (axis.dot(&right) / eigen.eigenvalues[k]);
+        }
+        let mut pages = [Vector3::zeros(); 3];
+        for (k, plane) in planes.iter().enumerate() {
+            let across = plane.normals[0].cross(&along).normalize();
+            let (mut ahead, mut behind) = (0usize, 0usize);
+            for x in points {
+                let near = plane.squared_distance(x).sqrt();
+                let side = across.dot(&(x - place));
+                let alone = planes
+                    .iter()
+                    .enumerate()
+                    .all(|(j, p)| j == k || p.squared_distance(x).sqrt() > 2.0 * near.max(tolerance / 2.0));
+                if near < tolerance && alone {
+                    if side > 0.0 {
+                        ahead += 1;
+                    } else {
+                        behind += 1;
+                    }
+                }
+            }
+            if ahead.min(behind) as f64 > MOST_BEYOND * (ahead + behind) as f64 {
+                return None;
+            }
+            pages[k] = if ahead >= behind { across } else { -across };
+        }
+        Some(Self {
+            place,
+            pages,
+        })
+    }
+
+    /// Distance of `x`, which is `d` from the patch of page `k`, from that half sheet.
+    fn distance(&self, k: usize, d: f64, x: &Vector3<f64>) -> f64 {
+        let from = x - self.place;
+        let side = self.pages[k].dot(&from);
+        if side >= 0.0 {
+            d.abs()
+        } else {
+            d.hypot(side)
+        }
+    }
+}
+
+impl SingularityModel for YJunction {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        at_least(3 * PATCH_POINTS, local)?;
+        let count = local.fitted;
+        let ep = self.tolerance.ep;
+        let all: Vec<Vector3<f64>> = vectors(local);
+        let points = &all[..count];
+        let cubic =
+            Vanishing::fit(points, 3, 1, local.radius).ok_or(Rejection::NoRealSolution)?;
+        let found = candidates(points, |x, out| cubic.gradients(x, out));
+        let tolerance = PLANE_TOLERANCE * local.radius;
+        let planes = greedy(points, &found, 3, tolerance).ok_or(Rejection::NoRealSolution)?;
+        let book = Book::of(&planes, points, tolerance).ok_or(Rejection::NoRealSolution)?;
+        let sheets = Sheets::new(&planes, &all, count, local.radius, |k, d, x| {
+            book.distance(k, d, x)
+        });
+
+        let center = points[local.center];
+        let mut labels = vec![0u8; all.len()];
+        let mut held = [0usize; 4];
+        let mut sum = 0.0;
+        for (k, (x, label)) in all.iter().zip(&mut labels).enumerate() {
+            let own = usize::from(sheets.owner[k]);
+            let d = [0, 1, 2].map(|s| sheets.patches[s].signed_distance(x).abs());
+            let on = d[own] < ep && (0..3).any(|s| s != own && d[s] < ep);
+            *label = if on { 0 } else { 1 + own as u8 };
+            if k < count {
+                sum += book.distance(own, d[own], x).powi(2);
+                held[usize::from(*label)] += 1;
+            }
+        }
+        let residual = self.tolerance.residual(sum, count)?;
+        let least = (LEAST_CELL_SHARE * (count - held[0]) as f64).max(3.0);
+        if let Some(stratum) = (1..4).find(|&c| (held[c] as f64) < least) {
+            return Err(Rejection::EmptyStratum {
+                stratum,
+                found: held[stratum],
+            });
+        }
+        let reached = sheets
+            .meet(&[0, 1, 2], 2, center, LARGEST_STEP * local.radius)
+            .filter(|place| {
+                let mut nearest = [f64::INFINITY; 4];
+                for (x, &label) in points.iter().zip(&labels) {
+                    let n = &mut nearest[usize::from(label)];
+                    *n = n.min((x - place).norm());
+                }
+                nearest[1..]
+                    .iter()
+                    .all(|&d| d < SUPPORT_REACH * local.radius)
+            });
+        let on_curve = labels[local.center] == 0;
+        let (moved, center_offset) = match reached {
+            Some(x) if on_curve || (x - center).norm() < WITNESS_REACH * ep => {
+                (x, (x - center).norm())
+            }
+            None if on_curve => return Err(Rejection::NoRealSolution),
+            _ => (book.place, f64::INFINITY),
+        };
+        Ok(Decomposition {
+            strata: [1, 2, 2, 2]
+                .map(|dimension| Stratum { dimension })
+                .to_vec(),
+            labels,
+            continuations: Vec::new(),
+            cells_at_curve: vec![3],
+            residual,
+            parameters: 22,
+            points: Vec::new(),
+            center: moved.iter().copied().collect(),
+            center_offset,
+        })
+    }
+
+    fn name(&self) -> &str {
+        "y-junction"
+    }
+}
