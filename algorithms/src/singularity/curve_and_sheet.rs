@@ -36,7 +36,7 @@ const LEAST_SINE: f64 = 0.3;
 /// The sheet is fitted to points farther than this many ep from the curve.
 const CLEAR: f64 = 1.5;
 /// Fewest points of an arc.
-const LEAST_ARC: usize = 3;
+const LEAST_ARC: usize = 2;
 /// A curve is at least this many ep long.
 const LEAST_LENGTH: f64 = 3.0;
 
@@ -144,6 +144,16 @@ impl Fit {
         }
         let beside = off_sheet(&sheet, points, ep);
         let curve = curve.ok_or(Rejection::NoRealSolution)?;
+        let astray = beside
+            .iter()
+            .map(|x| (curve.foot(x) - x).norm())
+            .fold(0.0, f64::max);
+        if astray >= ep {
+            return Err(Rejection::PoorFit {
+                residual: astray,
+                limit: ep,
+            });
+        }
         let mut t = curve.parameter(&points[local.center]);
         let mut height = f64::INFINITY;
         for _ in 0..12 {

@@ -570,7 +570,10 @@ impl<S: Scalar> Analyzer<'_, S> {
             0 => Kind::Singular(moved(OnStratum::Point, 0)),
             1 => Kind::Singular(moved(curve, fit.cells_at(label).unwrap_or(0))),
             _ if fit.center_offset > WITNESS_REACH * view.radius => Kind::Regular,
-            _ => Kind::Near(moved(curve, fit.cells_at_curve.first().copied().unwrap_or(0))),
+            _ => Kind::Near(moved(
+                curve,
+                fit.cells_at_curve.first().copied().unwrap_or(0),
+            )),
         };
         (kind, apex)
     }

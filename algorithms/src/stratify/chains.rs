@@ -24,6 +24,10 @@ pub(super) struct Curves {
 pub(super) const NODE_SPACING: f64 = 0.125;
 /// Curve points closer than this share of dl are one curve.
 const REACH: f64 = 1.0;
+/// The same where no surface is near that could carry another curve.
+const BARE_REACH: f64 = 2.0;
+/// A chain that stops at nothing has a landmark at its end; the next one is this share of dl away.
+const END_SEPARATION: f64 = 0.6;
 /// A chain is joined to a corner, or two free ends to each other, over at most this many dl.
 const JOIN: f64 = 3.0;
 /// Separations along a curve that are tried, as multiples of dl: the closing gap of a
@@ -139,9 +143,12 @@ impl Curves {
                 .map(|&r| analysis.offsets[r])
                 .fold(0.0, f64::max);
         for (k, &row) in rows.iter().enumerate() {
-            analyzer
-                .oracle
-                .within(row, S::of(REACH * dl + slack), &mut near);
+            let reach = if kind == Role::Curve && analysis.cells[row] == 0 {
+                BARE_REACH * dl
+            } else {
+                REACH * dl
+            };
+            analyzer.oracle.within(row, S::of(reach + slack), &mut near);
             for x in &near {
                 let other = at[x.index];
                 if other == usize::MAX || other == k {
@@ -151,7 +158,7 @@ impl Curves {
                 let parted = matches!((labels[k], labels[other]), (Some(a), Some(b)) if a.0 == b.0 && a.1 != b.1)
                     || kind == Role::Curve
                         && (analysis.cells[row] == 0) != (analysis.cells[x.index] == 0);
-                if d <= REACH * dl && !parted {
+                if d <= reach && !parted {
                     graph[k].push((other, d));
                 }
             }
@@ -240,6 +247,24 @@ impl Curves {
         });
         let (order, _) = sweep(graph, &[start], inside);
         let before = self.rows.len();
+        // Where a bare curve ends: all that is near the last point is on one side of it.
+        let free_end = order.last().map(|&(k, _)| k).filter(|&end| {
+            let around: Vec<usize> = graph[end]
+                .iter()
+                .map(|&(k, _)| k)
+                .filter(|&k| k < first_corner)
+                .collect();
+            let far = around
+                .iter()
+                .map(|&k| distance(rows[k], rows[end]))
+                .fold(0.0, f64::max);
+            end < first_corner
+                && component.iter().all(|&k| analysis.cells[rows[k]] == 0)
+                && kind == Role::Curve
+                && around
+                    .iter()
+                    .all(|&a| around.iter().all(|&b| distance(rows[a], rows[b]) <= far))
+        });
         let mut best: Option<Laid> = None;
         for stretch in 0..STRETCHES {
             let separation = dl * (1.0 + STRETCH_STEP * stretch as f64);
@@ -253,6 +278,16 @@ impl Curves {
                     && self.rows[..before].iter().all(|&r| distance(r, row) >= dl);
                 if free {
                     chosen.push(k);
+                }
+            }
+            if let Some(end) = free_end {
+                if let Some(&last) = chosen.last().filter(|&&c| {
+                    c != end && distance(rows[c], rows[end]) < END_SEPARATION * separation
+                }) {
+                    chosen.retain(|&c| c != last);
+                }
+                if !chosen.contains(&end) {
+                    chosen.push(end);
                 }
             }
             let sources: Vec<usize> = anchors.iter().chain(&chosen).copied().collect();
