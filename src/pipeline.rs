@@ -229,6 +229,8 @@ pub struct Report {
     pub dimension: usize,
     /// Points that coincide with an earlier one and were left out.
     pub duplicates: usize,
+    /// What told the local dimension; none where every point was taken as 2-dimensional.
+    pub estimator: Option<String>,
     /// Mean number of points in a neighborhood.
     pub mean_neighbors: f64,
     /// Points whose neighborhood is not 2-dimensional.
@@ -532,6 +534,10 @@ impl<S: Scalar> Pipeline<S> {
             points: whole.len(),
             dimension: cloud.dimension(),
             duplicates,
+            estimator: (!parameters.surface).then(|| {
+                let own = self.estimator.as_ref().map(|e| e.name().to_string());
+                own.unwrap_or_else(|| "pca".into())
+            }),
             mean_neighbors: analysis.mean_neighbors,
             candidates: analysis.candidates,
             curve_points,

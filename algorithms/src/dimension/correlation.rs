@@ -52,7 +52,11 @@ fn slope(pairs: &Pairs, kept: impl Fn(usize) -> bool, lengths: &mut Vec<f64>) ->
     lengths.clear();
     for a in (0..pairs.count).filter(|&a| pairs.radii[a] < half && kept(a)) {
         let row = pairs.row(a);
-        lengths.extend((0..pairs.count).filter(|&b| b != a && row[b] < half && kept(b)).map(|b| row[b]));
+        lengths.extend(
+            (0..pairs.count)
+                .filter(|&b| b != a && row[b] < half && kept(b))
+                .map(|b| row[b]),
+        );
     }
     let all = lengths.len();
     if all < LEAST_PAIRS {
@@ -118,7 +122,10 @@ impl<S: Scalar> GlobalEstimator<S> for CorrelationDimension<S> {
         let counts = execute::map(space.execute, space.len(), Vec::new, |near, i| {
             space.oracle.within(i, S::of(large), near);
             let fewer = near.partition_point(|x| x.distance.as_f64() < small);
-            [fewer.saturating_sub(1) as f64, near.len().saturating_sub(1) as f64]
+            [
+                fewer.saturating_sub(1) as f64,
+                near.len().saturating_sub(1) as f64,
+            ]
         });
         let total = |k: usize| counts.iter().map(|c| c[k]).sum::<f64>();
         let [fewer, more] = [total(0), total(1)];
@@ -138,12 +145,22 @@ impl<S: Scalar> GlobalEstimator<S> for CorrelationDimension<S> {
             .map(|c| (2.0 * (c[1] / more - c[0] / fewer)).powi(2))
             .sum();
         let error = spread.sqrt() / span;
-        Ok(GlobalDimension::new(value, error, space.most(), [small, large], space.len()))
+        Ok(GlobalDimension::new(
+            value,
+            error,
+            space.most(),
+            [small, large],
+            space.len(),
+        ))
     }
 }
 
 /// Median distances of the `near`-th and of the `far`-th neighbor.
-pub(super) fn neighbor_medians<S: Scalar>(space: &WholeCloud<'_, S>, near: usize, far: usize) -> [f64; 2] {
+pub(super) fn neighbor_medians<S: Scalar>(
+    space: &WholeCloud<'_, S>,
+    near: usize,
+    far: usize,
+) -> [f64; 2] {
     let far = far.min(space.len() - 1);
     let near = near.clamp(1, far);
     let found = execute::map(space.execute, space.len(), Vec::new, |all, i| {

@@ -40,7 +40,13 @@ impl NeighborGraph {
             space.neighborhood(i, near);
             near.iter()
                 .filter(|x| x.index != i)
-                .map(|x| (i.min(x.index) as u32, i.max(x.index) as u32, x.distance.as_f64()))
+                .map(|x| {
+                    (
+                        i.min(x.index) as u32,
+                        i.max(x.index) as u32,
+                        x.distance.as_f64(),
+                    )
+                })
                 .filter(|e| e.2.is_finite())
                 .collect::<Vec<_>>()
         });
@@ -188,7 +194,15 @@ mod tests {
             let (at, length) = left
                 .iter()
                 .enumerate()
-                .map(|(at, &t)| (at, reached.iter().map(|&r| d[r][t]).fold(f64::INFINITY, f64::min)))
+                .map(|(at, &t)| {
+                    (
+                        at,
+                        reached
+                            .iter()
+                            .map(|&r| d[r][t])
+                            .fold(f64::INFINITY, f64::min),
+                    )
+                })
                 .min_by(|a, b| a.1.total_cmp(&b.1))
                 .unwrap();
             total += length;

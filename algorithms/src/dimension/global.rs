@@ -1,8 +1,11 @@
 //! The dimension of a whole cloud.
 
 use super::decision::{confidence, decide};
-use crate::execute::Execute;
-use crosscap_core::{DimensionEstimate, Error, MetricSpace, Neighbor, NeighborhoodOracle, PointCloud, Scalar};
+use crate::execute::{self, Execute};
+use crosscap_core::{
+    DimensionEstimate, DimensionEstimator, Error, MetricSpace, Neighbor, Neighborhood,
+    NeighborhoodOracle, PointCloud, Scalar,
+};
 
 /// At which distances a dimension is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +71,48 @@ impl<S: Scalar> WholeCloud<'_, S> {
         self.len() == 0
     }
 
+    /// The dimension at every point, by an estimator of neighborhoods; `None` where a neighborhood holds too
+    /// few points for it.
+    ///
+    /// # Errors
+    /// The first error that is not [`Error::SparseNeighborhood`]; that one too when no point has an answer.
+    pub fn local(
+        &self,
+        estimator: &dyn DimensionEstimator<Scalar = S>,
+    ) -> Result<Vec<Option<DimensionEstimate>>, Error> {
+        self.scale.check()?;
+        let radius = match self.scale {
+            Scale::Nearest(_) => f64::INFINITY,
+            Scale::Within(r) => r,
+        };
+        let found = execute::map(self.execute, self.len(), Vec::new, |near, center| {
+            self.neighborhood(center, near);
+            estimator.estimate(&Neighborhood {
+                center,
+                radius,
+                neighbors: near,
+                metric: self.metric,
+                cloud: self.cloud,
+            })
+        });
+        let mut sparse = None;
+        let mut answers = Vec::with_capacity(found.len());
+        for answer in found {
+            answers.push(match answer {
+                Ok(estimate) => Some(estimate),
+                Err(error @ Error::SparseNeighborhood { .. }) => {
+                    sparse.get_or_insert(error);
+                    None
+                }
+                Err(error) => return Err(error),
+            });
+        }
+        match sparse {
+            Some(error) if answers.iter().all(Option::is_none) => Err(error),
+            _ => Ok(answers),
+        }
+    }
+
     /// Writes the neighborhood of `i` at the scale into `out`, nearest first, `i` among them.
     pub(super) fn neighborhood(&self, i: usize, out: &mut Vec<Neighbor<S>>) {
         match self.scale {
@@ -114,7 +159,13 @@ pub struct GlobalDimension {
 }
 
 impl GlobalDimension {
-    pub(super) fn new(value: f64, error: f64, most: usize, scales: [f64; 2], points: usize) -> Self {
+    pub(super) fn new(
+        value: f64,
+        error: f64,
+        most: usize,
+        scales: [f64; 2],
+        points: usize,
+    ) -> Self {
         let DimensionEstimate {
             dimension, value, ..
         } = decide(value, error, most);

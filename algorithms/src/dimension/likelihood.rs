@@ -140,6 +140,12 @@ impl<S: Scalar> GlobalEstimator<S> for MaximumLikelihood<S> {
         let nearest = used.iter().map(|x| x.2).fold(f64::INFINITY, f64::min);
         let farthest = used.iter().map(|x| x.3).fold(0.0, f64::max);
         let scales = [nearest, if radius.is_finite() { radius } else { farthest }];
-        Ok(GlobalDimension::new(value, error, space.most(), scales, used.len()))
+        Ok(GlobalDimension::new(
+            value,
+            error,
+            space.most(),
+            scales,
+            used.len(),
+        ))
     }
 }

@@ -20,8 +20,9 @@
 //! [`PrincipalComponents::dimension_of`].
 //!
 //! # Crossings
-//! Where two surfaces cross, the points are still those of a 2-dimensional set: the number of pairs,
-//! balls or branches grows as on one surface, and every estimator but principal components says 2.
+//! Where two surfaces cross, the points are still those of a 2-dimensional set: on the crossing the number of
+//! points, balls or branches grows as on one surface, and every estimator but principal components says 2.
+//! (Beside it the second sheet is seen from some distance on only, and values are between 2 and 3.)
 //! In the pipeline they serve for surfaces that do not cross; crossings are found by principal
 //! components, which see the three axes that two planes need.
 

@@ -14,8 +14,10 @@ use std::marker::PhantomData;
 const LEAST: usize = 12;
 /// Orders in which a packing is grown, for the mean of its logarithm.
 const ORDERS: usize = 8;
-/// The same over a whole cloud, for each group that is left out.
-const GLOBAL_ORDERS: usize = 4;
+/// The same over a whole cloud.
+const GLOBAL_ORDERS: usize = 16;
+/// The same without a group, for the standard error.
+const GROUP_ORDERS: usize = 4;
 /// Seed of the orders; the answer is the same at every call.
 const SEED: u64 = 0x7061_636b;
 /// Radii in a neighborhood, as shares of its own.
@@ -78,7 +80,9 @@ impl<S: Scalar> DimensionEstimator for PackingNumbers<S> {
             return Ok(decide(0.0, 0.0, most));
         }
         let mut random = Random::new(SEED);
-        let orders: Vec<Vec<usize>> = (0..ORDERS).map(|_| random.permutation(pairs.count)).collect();
+        let orders: Vec<Vec<usize>> = (0..ORDERS)
+            .map(|_| random.permutation(pairs.count))
+            .collect();
         let span = SHARES.map(|s| (1.0 + 2.0 / s).ln());
         let slope = |kept: &dyn Fn(usize) -> bool| {
             let sizes = SHARES.map(|s| log_size(&pairs, &orders, s * pairs.reach, kept));
@@ -119,10 +123,19 @@ impl<S: Scalar> GlobalEstimator<S> for PackingNumbers<S> {
         for (rank, &i) in orders[0].iter().enumerate() {
             group[i] = rank % GROUPS;
         }
-        // Job (g, order, radius): the packing without group g; the last g leaves nothing out.
-        let jobs = (GROUPS + 1) * GLOBAL_ORDERS * 2;
-        let sizes = execute::few(space.execute, jobs, |job| {
-            let (g, order, radius) = (job / (2 * GLOBAL_ORDERS), job / 2 % GLOBAL_ORDERS, job % 2);
+        // The last g leaves nothing out.
+        let drawn = |g: usize| {
+            if g < GROUPS {
+                GROUP_ORDERS
+            } else {
+                GLOBAL_ORDERS
+            }
+        };
+        let jobs: Vec<(usize, usize)> = (0..=GROUPS)
+            .flat_map(|g| (0..drawn(g)).map(move |k| (g, k)))
+            .collect();
+        let sizes = execute::few(space.execute, 2 * jobs.len(), |job| {
+            let ((g, order), radius) = (jobs[job / 2], job % 2);
             let order = &orders[order];
             let separation = S::of([small, large][radius]);
             let mut covered = vec![false; count];
@@ -138,12 +151,18 @@ impl<S: Scalar> GlobalEstimator<S> for PackingNumbers<S> {
             (size as f64).ln()
         });
         let span = (large / small).ln();
-        let slopes: Vec<f64> = sizes
-            .chunks_exact(2 * GLOBAL_ORDERS)
-            .map(|s| s.chunks_exact(2).map(|p| (p[0] - p[1]) / span).sum::<f64>() / GLOBAL_ORDERS as f64)
-            .collect();
+        let mut slopes = [0.0; GROUPS + 1];
+        for (&(g, _), pair) in jobs.iter().zip(sizes.chunks_exact(2)) {
+            slopes[g] += (pair[0] - pair[1]) / span / drawn(g) as f64;
+        }
         let (without, all) = slopes.split_at(GROUPS);
         let error = standard_error(without);
-        Ok(GlobalDimension::new(all[0], error, space.most(), [small, large], count))
+        Ok(GlobalDimension::new(
+            all[0],
+            error,
+            space.most(),
+            [small, large],
+            count,
+        ))
     }
 }

@@ -34,11 +34,16 @@ impl Pairs {
             });
         }
         let count = all.min(MOST);
-        let chosen: Vec<_> = (0..count).map(|k| near.neighbors[k * all / count]).collect();
+        let chosen: Vec<_> = (0..count)
+            .map(|k| near.neighbors[k * all / count])
+            .collect();
         let mut distances = vec![0.0; count * count];
         for a in 0..count {
             for b in 0..a {
-                let d = near.metric.distance(chosen[a].index, chosen[b].index).as_f64();
+                let d = near
+                    .metric
+                    .distance(chosen[a].index, chosen[b].index)
+                    .as_f64();
                 distances[a * count + b] = d;
                 distances[b * count + a] = d;
             }

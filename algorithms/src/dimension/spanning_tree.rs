@@ -19,7 +19,9 @@ const DRAWN: usize = 4;
 /// Sizes of the subsets of a whole cloud.
 const GLOBAL_SHARES: [f64; 5] = [0.5, 0.625, 0.75, 0.875, 1.0];
 /// Subsets of each size of a whole cloud.
-const GLOBAL_DRAWN: usize = 4;
+const GLOBAL_DRAWN: usize = 16;
+/// The same without a group, for the standard error.
+const GROUP_DRAWN: usize = 4;
 /// Seed of the subsets; the answer is the same at every call.
 const SEED: u64 = 0x7472_6565;
 
@@ -101,7 +103,9 @@ impl<S: Scalar> DimensionEstimator for SpanningTree<S> {
         let pairs = Pairs::of(near, LEAST)?;
         let most = near.neighbors.len() - 1;
         let mut random = Random::new(SEED);
-        let orders: Vec<Vec<usize>> = (0..DRAWN).map(|_| random.permutation(pairs.count)).collect();
+        let orders: Vec<Vec<usize>> = (0..DRAWN)
+            .map(|_| random.permutation(pairs.count))
+            .collect();
         let mut away = Vec::new();
         let mut chosen = Vec::new();
         let mut flat = false;
@@ -162,14 +166,21 @@ impl<S: Scalar> GlobalEstimator<S> for SpanningTree<S> {
         for (rank, &i) in orders[0].iter().enumerate() {
             group[i] = rank % GROUPS;
         }
-        // Job (g, share, order): a tree without group g; the last g leaves nothing out.
-        let each = GLOBAL_SHARES.len() * GLOBAL_DRAWN;
-        let found = execute::few(space.execute, (GROUPS + 1) * each, |job| {
-            let (g, share, order) = (
-                job / each,
-                GLOBAL_SHARES[job % each / GLOBAL_DRAWN],
-                &orders[job % GLOBAL_DRAWN],
-            );
+        // The last g leaves nothing out.
+        let drawn = |g: usize| {
+            if g < GROUPS {
+                GROUP_DRAWN
+            } else {
+                GLOBAL_DRAWN
+            }
+        };
+        let jobs: Vec<(usize, f64, usize)> = (0..=GROUPS)
+            .flat_map(|g| GLOBAL_SHARES.map(|share| (g, share)))
+            .flat_map(|(g, share)| (0..drawn(g)).map(move |k| (g, share, k)))
+            .collect();
+        let found = execute::few(space.execute, jobs.len(), |job| {
+            let (g, share, order) = jobs[job];
+            let order = &orders[order];
             let left: Vec<u32> = order
                 .iter()
                 .filter(|&&k| group[k] != g)
@@ -187,7 +198,14 @@ impl<S: Scalar> GlobalEstimator<S> for SpanningTree<S> {
             });
         }
         let most = space.most();
-        let values: Vec<f64> = found.chunks_exact(each).map(|x| dimension_of(x, most)).collect();
+        let mut at = 0;
+        let values: Vec<f64> = (0..=GROUPS)
+            .map(|g| {
+                let count = GLOBAL_SHARES.len() * drawn(g);
+                at += count;
+                dimension_of(&found[at - count..at], most)
+            })
+            .collect();
         let (without, all) = values.split_at(GROUPS);
         let error = standard_error(without);
         let scales = [graph.shortest(), graph.longest()];

@@ -1,5 +1,6 @@
 //! Which stratum every point of the cloud is in.
 
+use super::audit;
 use crate::execute::{self, Execute};
 use crate::moments::LocalDimension;
 use crate::principal::PrincipalFrame;
@@ -382,15 +383,14 @@ impl<S: Scalar> Analyzer<'_, S> {
                     metric: self.metric,
                     cloud: Some(self.cloud),
                 })?;
-                if !estimate.value.is_finite() || estimate.dimension > self.cloud.dimension() {
-                    return Err(Error::Law {
-                        plugin: estimator.name().into(),
-                        law: "a dimension between 0 and that of the space",
-                        point: i,
-                        detail: format!("{} ({})", estimate.dimension, estimate.value),
-                    });
-                }
-                (found, estimate.dimension)
+                let dimension = audit::dimension(
+                    estimator.name(),
+                    i,
+                    &estimate,
+                    found,
+                    self.cloud.dimension(),
+                )?;
+                (found, dimension)
             }
         };
         Ok((neighbors, dimension.min(255) as u8))
