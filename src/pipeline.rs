@@ -472,7 +472,10 @@ impl<S: Scalar> Pipeline<S> {
             };
             clock.enter(Stage::Triangulation);
             observer(Stage::Triangulation);
-            let triangulation = self.triangulator().triangulate(&stratification.waist)?;
+            let triangulation = self
+                .triangulator()
+                .triangulate(&stratification.waist)
+                .map_err(|error| at_input_row(error, &stratification.rows, &rows))?;
             let before = extra.len();
             // What cannot be triangulated is not mended by more landmarks.
             let sound = triangulation.incomplete.len() * 100 <= stratification.rows.len();
@@ -774,6 +777,24 @@ fn special_points<S: Scalar>(
             })
         })
         .collect()
+}
+
+/// A broken law of a plug-in of the triangulation, with the row of the input instead of the landmark.
+fn at_input_row(error: Error, landmarks: &[usize], rows: &[usize]) -> Error {
+    match error {
+        Error::Law {
+            plugin,
+            law,
+            point,
+            detail,
+        } => Error::Law {
+            plugin,
+            law,
+            point: landmarks.get(point).map_or(point, |&row| rows[row]),
+            detail,
+        },
+        other => other,
+    }
 }
 
 /// The stars that stayed open, as errors.

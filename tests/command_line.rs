@@ -1020,7 +1020,7 @@ fn dimensions_that_cannot_be_told_are_not() {
     room.run("dimension p.npy --global --eps 1e-6 --estimator packing")
         .expect(0);
     write_points(room.path("few.npy"), &ball(3)).unwrap();
-    room.run("dimension few.npy --global")
+    room.run("dimension few.npy --global --estimator mle")
         .expect(2)
         .complains("found 3 points");
     // All points in one place: no dimension, no panic.

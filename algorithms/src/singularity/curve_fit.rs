@@ -54,8 +54,10 @@ impl QuadraticCurve {
             let inverse = normal.try_inverse()?;
             for k in 0..3 {
                 let scale = length.powi(k as i32);
-                curve.terms[k] =
-                    (0..3).map(|j| right[j] * inverse[(k, j)]).sum::<Vector3<f64>>() / scale;
+                curve.terms[k] = (0..3)
+                    .map(|j| right[j] * inverse[(k, j)])
+                    .sum::<Vector3<f64>>()
+                    / scale;
             }
         }
         Some(curve)

@@ -17,10 +17,7 @@ const LEAST_GRADIENT: f64 = 0.05;
 
 impl<const D: usize> Flat<D> {
     /// The plane through `origin` whose normal space is spanned best by `gradients`.
-    pub(super) fn normal_to(
-        origin: SVector<f64, D>,
-        gradients: &[SVector<f64, D>],
-    ) -> Self {
+    pub(super) fn normal_to(origin: SVector<f64, D>, gradients: &[SVector<f64, D>]) -> Self {
         let mut spread = DMatrix::<f64>::zeros(D, D);
         for g in gradients {
             for a in 0..D {

@@ -95,7 +95,10 @@ impl SingularityModel for IsolatedCrossing {
         let found = candidates(points, |x, out| quadrics.gradients(x, out));
         let planes = greedy(points, &found, 2, PLANE_TOLERANCE * local.radius)
             .ok_or(Rejection::NoRealSolution)?;
-        let mut sheets = [SheetInFour::plane(&planes[0]), SheetInFour::plane(&planes[1])];
+        let mut sheets = [
+            SheetInFour::plane(&planes[0]),
+            SheetInFour::plane(&planes[1]),
+        ];
         let assign = |sheets: &[SheetInFour; 2]| -> Vec<u8> {
             all.iter()
                 .map(|x| u8::from(sheets[1].distance(x) < sheets[0].distance(x)))
@@ -113,8 +116,7 @@ impl SingularityModel for IsolatedCrossing {
             owner = assign(&sheets);
         }
         let center = points[local.center];
-        let apex =
-            meet(&sheets, center, REACH * local.radius).ok_or(Rejection::NoRealSolution)?;
+        let apex = meet(&sheets, center, REACH * local.radius).ok_or(Rejection::NoRealSolution)?;
         let mut labels = vec![0u8; all.len()];
         let mut held = [0usize; 2];
         let mut sum = 0.0;
@@ -141,16 +143,17 @@ impl SingularityModel for IsolatedCrossing {
         }
         let at_point = labels[local.center] == 0;
         Ok(Decomposition {
-            strata: [0, 2, 2]
-                .map(|dimension| Stratum { dimension })
-                .to_vec(),
+            strata: [0, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
             labels,
             continuations: Vec::new(),
             cells_at_curve: Vec::new(),
             residual,
             parameters: 24,
             points: vec![apex.iter().copied().collect()],
-            center: if at_point { apex } else { center }.iter().copied().collect(),
+            center: if at_point { apex } else { center }
+                .iter()
+                .copied()
+                .collect(),
             center_offset: if at_point {
                 (apex - center).norm()
             } else {

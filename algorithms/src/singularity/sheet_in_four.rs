@@ -94,7 +94,8 @@ impl SheetInFour {
         let (values, gradients) = self.heights(x);
         let gram = gradients * gradients.transpose();
         let across: Matrix4x2<f64> = gradients.transpose();
-        gram.try_inverse()
-            .map_or(values.norm(), |inverse| (across * (inverse * values)).norm())
+        gram.try_inverse().map_or(values.norm(), |inverse| {
+            (across * (inverse * values)).norm()
+        })
     }
 }

@@ -31,9 +31,7 @@ impl Sheets {
             .map(|plane| {
                 let normal = plane.normals[0];
                 let least = normal.iamin();
-                let tangent = normal
-                    .cross(&Vector3::ith(least, 1.0))
-                    .normalize();
+                let tangent = normal.cross(&Vector3::ith(least, 1.0)).normalize();
                 QuadraticPatch::plane(plane.origin, [tangent, normal.cross(&tangent), normal])
             })
             .collect();

@@ -65,8 +65,7 @@ impl SingularityModel for TriplePoint {
         let ep = self.tolerance.ep;
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
-        let cubic =
-            Vanishing::fit(points, 3, 1, local.radius).ok_or(Rejection::NoRealSolution)?;
+        let cubic = Vanishing::fit(points, 3, 1, local.radius).ok_or(Rejection::NoRealSolution)?;
         let found = candidates(points, |x, out| cubic.gradients(x, out));
         let planes = greedy(points, &found, 3, PLANE_TOLERANCE * local.radius)
             .ok_or(Rejection::NoRealSolution)?;

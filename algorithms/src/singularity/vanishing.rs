@@ -53,7 +53,14 @@ impl<const D: usize> Vanishing<D> {
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
         let coefficients = order[..count]
             .iter()
-            .flat_map(|&k| eigen.eigenvectors.column(k).iter().copied().collect::<Vec<_>>())
+            .flat_map(|&k| {
+                eigen
+                    .eigenvectors
+                    .column(k)
+                    .iter()
+                    .copied()
+                    .collect::<Vec<_>>()
+            })
             .collect();
         Some(Self {
             exponents,

@@ -89,10 +89,9 @@ impl Book {
             for x in points {
                 let near = plane.squared_distance(x).sqrt();
                 let side = across.dot(&(x - place));
-                let alone = planes
-                    .iter()
-                    .enumerate()
-                    .all(|(j, p)| j == k || p.squared_distance(x).sqrt() > 2.0 * near.max(tolerance / 2.0));
+                let alone = planes.iter().enumerate().all(|(j, p)| {
+                    j == k || p.squared_distance(x).sqrt() > 2.0 * near.max(tolerance / 2.0)
+                });
                 if near < tolerance && alone {
                     if side > 0.0 {
                         ahead += 1;
@@ -106,21 +105,14 @@ impl Book {
             }
             pages[k] = if ahead >= behind { across } else { -across };
         }
-        Some(Self {
-            place,
-            pages,
-        })
+        Some(Self { place, pages })
     }
 
     /// Distance of `x`, which is `d` from the patch of page `k`, from that half sheet.
     fn distance(&self, k: usize, d: f64, x: &Vector3<f64>) -> f64 {
         let from = x - self.place;
         let side = self.pages[k].dot(&from);
-        if side >= 0.0 {
-            d.abs()
-        } else {
-            d.hypot(side)
-        }
+        if side >= 0.0 { d.abs() } else { d.hypot(side) }
     }
 }
 
@@ -135,8 +127,7 @@ impl SingularityModel for YJunction {
         let ep = self.tolerance.ep;
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
-        let cubic =
-            Vanishing::fit(points, 3, 1, local.radius).ok_or(Rejection::NoRealSolution)?;
+        let cubic = Vanishing::fit(points, 3, 1, local.radius).ok_or(Rejection::NoRealSolution)?;
         let found = candidates(points, |x, out| cubic.gradients(x, out));
         let tolerance = PLANE_TOLERANCE * local.radius;
         let planes = greedy(points, &found, 3, tolerance).ok_or(Rejection::NoRealSolution)?;
@@ -188,9 +179,7 @@ impl SingularityModel for YJunction {
             _ => (book.place, f64::INFINITY),
         };
         Ok(Decomposition {
-            strata: [1, 2, 2, 2]
-                .map(|dimension| Stratum { dimension })
-                .to_vec(),
+            strata: [1, 2, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
             labels,
             continuations: Vec::new(),
             cells_at_curve: vec![3],

@@ -1,9 +1,6 @@
-//! What plug-ins return, checked before it is believed.
-//!
-//! The law kit tries a plug-in on drawn inputs before it is used; these checks see what it returns on
-//! the data at hand. Each is cheap beside the call that it follows, and names the plug-in, the law as
-//! its trait words it, and the point.
+//! Estimates of the dimension.
 
+use super::broken;
 use crosscap_core::{DimensionEstimate, Error};
 
 /// The dimension that an estimator found at `point` from so many `neighbors`, at most `space`.
@@ -11,7 +8,7 @@ use crosscap_core::{DimensionEstimate, Error};
 /// # Errors
 /// [`Error::Law`] for a value that is not finite or negative, a confidence outside 0 to 1, a dimension
 /// that is not the value rounded, or more dimensions than the points span.
-pub(super) fn dimension(
+pub(crate) fn dimension(
     plugin: &str,
     point: usize,
     estimate: &DimensionEstimate,
@@ -24,35 +21,35 @@ pub(super) fn dimension(
         confidence,
         ..
     } = *estimate;
-    let broken = |law: &'static str, detail: String| {
-        Err(Error::Law {
-            plugin: plugin.into(),
-            law,
-            point,
-            detail,
-        })
-    };
     if !(value.is_finite() && value >= 0.0) {
         return broken(
+            plugin,
             "answer: the value is finite and at least 0",
+            point,
             format!("{value}"),
         );
     }
     if !(0.0..=1.0).contains(&confidence) {
         return broken(
+            plugin,
             "answer: the confidence is between 0 and 1",
+            point,
             format!("{confidence}"),
         );
     }
     if (value - dimension as f64).abs() > 0.5 + ROUNDING {
         return broken(
-            "answer: the dimension is the value rounded",
+            plugin,
+            "rounded: the dimension is the value rounded",
+            point,
             format!("dimension {dimension} for the value {value}"),
         );
     }
     if dimension >= neighbors.max(1) {
         return broken(
-            "answer: k points span at most k - 1 dimensions",
+            plugin,
+            "rounded: k points span at most k - 1 dimensions",
+            point,
             format!("dimension {dimension} from {neighbors} points"),
         );
     }
