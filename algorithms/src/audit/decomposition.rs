@@ -75,16 +75,16 @@ fn check(
             format!("strata {a} and {b} of {dimensions:?}"),
         );
     }
-    for (law, value) in [
-        ("the residual is finite and at least 0", fit.residual),
-        (
-            "the center offset is finite and at least 0",
-            fit.center_offset,
-        ),
-    ] {
-        if !(value.is_finite() && value >= 0.0) {
-            return broken(plugin, law, point, format!("{value}"));
-        }
+    if !(fit.residual.is_finite() && fit.residual >= 0.0) {
+        let law = "the residual is finite and at least 0";
+        return broken(plugin, law, point, format!("{}", fit.residual));
+    }
+    // In a cell the singular stratum may be out of sight.
+    let on_it = dimensions[fit.labels[local.center] as usize] < 2;
+    if !(fit.center_offset >= 0.0 && (fit.center_offset.is_finite() || !on_it)) {
+        let law =
+            "the center offset is at least 0, and finite where the center is on a curve or point";
+        return broken(plugin, law, point, format!("{}", fit.center_offset));
     }
     if fit.center.len() != local.dimension || fit.center.iter().any(|c| !c.is_finite()) {
         let law = "the center has finite coordinates, local_dimension of them";

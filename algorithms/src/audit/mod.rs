@@ -12,7 +12,7 @@
 //! | singularity model | partition, order of strata, curves, continuations, residual, center | every decomposition |
 //! | selector | candidates only, separation, covering | whole |
 //! | chart | size, finite coordinates, distortion | every chart |
-//! | compatibility test | symmetry | every 16th answer |
+//! | compatibility test | symmetry, known pairs | once; every "no", and every 16th answer |
 //! | triangle rule | never NaN, symmetry, a triangle without area last | every rank; the last two every 16th |
 //!
 //! What was found is an [`Error::Law`](crosscap_core::Error::Law) with the plug-in, the law as the trait words it, and the
@@ -32,7 +32,7 @@ pub(crate) use estimate::dimension;
 pub(crate) use faults::Faults;
 pub(crate) use oracle::oracle;
 pub(crate) use selection::{Question, selection};
-pub(crate) use triangulation::{AuditedChart, AuditedRule, AuditedTest, Watch};
+pub(crate) use triangulation::{AuditedChart, AuditedRule, AuditedTest, Watch, known_pairs};
 
 use crosscap_core::{Error, Scalar};
 

@@ -2,7 +2,7 @@
 
 use super::Rules;
 use super::star::Patch;
-use crate::audit::{AuditedChart, AuditedRule, AuditedTest, Watch};
+use crate::audit::{AuditedChart, AuditedRule, AuditedTest, Watch, known_pairs};
 use crosscap_core::{
     CompatibilityTest, Complex, CurveEdge, Error, LocalChart, Scalar, StratifiedLandmarks,
     TriangleRule,
@@ -245,6 +245,12 @@ impl Triangulator<'_> {
         input: &StratifiedLandmarks<S>,
     ) -> Result<Triangulation, Error> {
         input.check()?;
+        let first = input.neighborhoods.first().and_then(|near| {
+            let (&a, &b) = (near.members.first()?, near.members.get(1)?);
+            input.distances.get(a, b)
+        });
+        let size = first.map_or(1.0, Scalar::as_f64);
+        known_pairs(self.test, if size > 0.0 { size } else { 1.0 })?;
         let watch = Watch::default();
         let parts = &Triangulator {
             chart: &AuditedChart {
