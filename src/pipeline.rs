@@ -229,6 +229,8 @@ pub struct Report {
     pub dimension: usize,
     /// Points that coincide with an earlier one and were left out.
     pub duplicates: usize,
+    /// What told the local dimension; none where every point was taken as 2-dimensional.
+    pub estimator: Option<String>,
     /// Mean number of points in a neighborhood.
     pub mean_neighbors: f64,
     /// Points whose neighborhood is not 2-dimensional.
@@ -470,7 +472,10 @@ impl<S: Scalar> Pipeline<S> {
             };
             clock.enter(Stage::Triangulation);
             observer(Stage::Triangulation);
-            let triangulation = self.triangulator().triangulate(&stratification.waist)?;
+            let triangulation = self
+                .triangulator()
+                .triangulate(&stratification.waist)
+                .map_err(|error| at_input_row(error, &stratification.rows, &rows))?;
             let before = extra.len();
             // What cannot be triangulated is not mended by more landmarks.
             let sound = triangulation.incomplete.len() * 100 <= stratification.rows.len();
@@ -532,6 +537,10 @@ impl<S: Scalar> Pipeline<S> {
             points: whole.len(),
             dimension: cloud.dimension(),
             duplicates,
+            estimator: (!parameters.surface).then(|| {
+                let own = self.estimator.as_ref().map(|e| e.name().to_string());
+                own.unwrap_or_else(|| "pca".into())
+            }),
             mean_neighbors: analysis.mean_neighbors,
             candidates: analysis.candidates,
             curve_points,
@@ -768,6 +777,24 @@ fn special_points<S: Scalar>(
             })
         })
         .collect()
+}
+
+/// A broken law of a plug-in of the triangulation, with the row of the input instead of the landmark.
+fn at_input_row(error: Error, landmarks: &[usize], rows: &[usize]) -> Error {
+    match error {
+        Error::Law {
+            plugin,
+            law,
+            point,
+            detail,
+        } => Error::Law {
+            plugin,
+            law,
+            point: landmarks.get(point).map_or(point, |&row| rows[row]),
+            detail,
+        },
+        other => other,
+    }
 }
 
 /// The stars that stayed open, as errors.

@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use crosscap_algorithms::chart::ClassicalScaling;
-use crosscap_algorithms::dimension::PrincipalComponents;
+use crosscap_algorithms::dimension::{
+    CorrelationDimension, MaximumLikelihood, PackingNumbers, PrincipalComponents, SpanningTree,
+};
 use crosscap_algorithms::landmarks::{MaxMin, RandomGreedy};
 use crosscap_algorithms::metric::{BruteForceOracle, Euclidean, GivenDistances, Lifted};
 use crosscap_algorithms::predicate::PlanarPredicate;
@@ -112,6 +114,19 @@ fn dimension_estimators() {
         laws::estimator(&settings(), &PrincipalComponents::<f64>::new(dt).unwrap()).unwrap();
         laws::estimator(&settings(), &PrincipalComponents::<f32>::new(dt).unwrap()).unwrap();
     }
+}
+
+#[test]
+fn dimension_estimators_from_distances() {
+    let s = &settings();
+    laws::estimator(s, &MaximumLikelihood::<f64>::new()).unwrap();
+    laws::estimator(s, &MaximumLikelihood::<f32>::new()).unwrap();
+    laws::estimator(s, &CorrelationDimension::<f64>::new()).unwrap();
+    laws::estimator(s, &CorrelationDimension::<f32>::new()).unwrap();
+    laws::estimator(s, &PackingNumbers::<f64>::new()).unwrap();
+    laws::estimator(s, &PackingNumbers::<f32>::new()).unwrap();
+    laws::estimator(s, &SpanningTree::<f64>::new()).unwrap();
+    laws::estimator(s, &SpanningTree::<f32>::new()).unwrap();
 }
 
 /// Instances as a generator draws them, for a model that fits them to this share of the radius.

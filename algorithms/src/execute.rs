@@ -46,3 +46,19 @@ pub(crate) fn map<T: Send + Sync, C>(
         .flat_map(|b| b.into_inner().unwrap_or_default())
         .collect()
 }
+
+/// `work(i)` for every `i` below `count`, in order, one job each: for few jobs that are long.
+pub(crate) fn few<T: Send + Sync>(
+    execute: &dyn Execute,
+    count: usize,
+    work: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
+    let slots: Vec<OnceLock<T>> = (0..count).map(|_| OnceLock::new()).collect();
+    execute.ranges(count, &|range| {
+        for i in range {
+            // An index is given out once, so setting it cannot fail.
+            let _ = slots[i].set(work(i));
+        }
+    });
+    slots.into_iter().filter_map(OnceLock::into_inner).collect()
+}

@@ -3,6 +3,8 @@
 mod check;
 mod convert;
 mod demo;
+mod dimension;
+mod estimators;
 mod failure;
 mod findings;
 mod layout;
@@ -57,6 +59,7 @@ enum Command {
     Sample(sample::Sample),
     Reconstruct(Box<reconstruct::Reconstruct>),
     Check(check::Check),
+    Dimension(dimension::Dimension),
     View(view::View),
     Convert(convert::Convert),
     Paper(paper::Paper),
@@ -80,6 +83,7 @@ pub fn run() -> ExitCode {
         Command::Sample(command) => command.run(),
         Command::Reconstruct(command) => command.run(),
         Command::Check(command) => command.run(),
+        Command::Dimension(command) => command.run(),
         Command::View(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Paper(command) => command.run(),

@@ -1,5 +1,6 @@
 //! Parameters of a reconstruction as the command line has them.
 
+use super::estimators::EstimatorName;
 use super::failure::Failure;
 use super::number::{positive, share};
 use clap::{Args, ValueEnum};
@@ -66,6 +67,18 @@ pub struct ParameterArguments {
         default_value_t = DIMENSION_TOLERANCE
     )]
     pub dt: f64,
+
+    /// Estimator of the local dimension
+    ///
+    /// All but pca are for surfaces that do not cross: they take a crossing for a surface.
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_enum,
+        default_value_t,
+        conflicts_with = "surface"
+    )]
+    pub estimator: EstimatorName,
 
     /// Tolerance of the fit of two sheets, unit of the data: the root mean squared distance of the points to the nearer one
     /// [default: eps / 5]

@@ -1,5 +1,6 @@
 //! `crosscap reconstruct`: points to mesh.
 
+use super::estimators::EstimatorName;
 use super::failure::Failure;
 use super::findings::{Findings, pretty};
 use super::number::counted;
@@ -85,7 +86,7 @@ impl Reconstruct {
         let parameters = self
             .parameters
             .parameters(self.boundary_rows(cloud.len())?)?;
-        let outcome = reconstruct(&cloud, parameters.clone())?;
+        let outcome = reconstruct_by(&cloud, parameters.clone(), self.parameters.estimator)?;
         let verified = outcome.is_verified();
         if !verified {
             for reason in reasons(&outcome) {
@@ -189,9 +190,18 @@ impl Reconstruct {
 
 /// Runs the pipeline in the precision of the points, with progress.
 pub fn reconstruct(cloud: &AnyCloud, parameters: Parameters) -> Result<Outcome, Error> {
+    reconstruct_by(cloud, parameters, EstimatorName::default())
+}
+
+/// The same with an estimator of the local dimension.
+fn reconstruct_by(
+    cloud: &AnyCloud,
+    parameters: Parameters,
+    estimator: EstimatorName,
+) -> Result<Outcome, Error> {
     match cloud {
-        AnyCloud::F32(cloud) => run(cloud, parameters),
-        AnyCloud::F64(cloud) => run(cloud, parameters),
+        AnyCloud::F32(cloud) => run(cloud, parameters, estimator),
+        AnyCloud::F64(cloud) => run(cloud, parameters, estimator),
         other => Err(Error::Shape {
             found: format!("coordinates of type {}", other.scalar_name()),
             expected: "f32 or f64".into(),
@@ -199,12 +209,20 @@ pub fn reconstruct(cloud: &AnyCloud, parameters: Parameters) -> Result<Outcome, 
     }
 }
 
-fn run<S: Scalar>(cloud: &PointCloud<S>, parameters: Parameters) -> Result<Outcome, Error> {
+fn run<S: Scalar>(
+    cloud: &PointCloud<S>,
+    parameters: Parameters,
+    estimator: EstimatorName,
+) -> Result<Outcome, Error> {
     let progress = Progress::new("starting");
     let shown = progress.clone();
-    Pipeline::new(parameters)?
-        .on_stage(move |stage| shown.stage(stage))
-        .reconstruct(cloud)
+    let dt = parameters.dt;
+    let mut pipeline = Pipeline::new(parameters)?.on_stage(move |stage| shown.stage(stage));
+    // The pipeline has principal components of its own, of all points together.
+    if estimator != EstimatorName::Pca {
+        pipeline = pipeline.estimator(estimator.local(dt)?);
+    }
+    pipeline.reconstruct(cloud)
 }
 
 /// What is known about the mesh of an outcome.
@@ -252,6 +270,7 @@ pub fn write_reconstruction(
         "surface": parameters.surface,
         "boundary_points": parameters.boundary.len(),
         "method": parameters.method.to_string(),
+        "estimator": outcome.report.estimator,
     });
     let pieces = outcome.pieces.as_ref().ok();
     let extras = MeshExtras {

@@ -1,5 +1,6 @@
 //! Dimension by principal component analysis with a tolerance.
 
+use super::global::{GlobalDimension, GlobalEstimator, WholeCloud};
 use crate::principal::PrincipalFrame;
 use crosscap_core::{DimensionEstimate, DimensionEstimator, Error, Neighborhood, Scalar};
 use std::marker::PhantomData;
@@ -95,5 +96,32 @@ impl<S: Scalar> DimensionEstimator for PrincipalComponents<S> {
 
     fn name(&self) -> &str {
         "pca"
+    }
+}
+
+impl<S: Scalar> GlobalEstimator<S> for PrincipalComponents<S> {
+    /// The dimension of the flat that holds the cloud but for the share dt of its variance: one more
+    /// than that of a round sphere. The scale of the space is not used.
+    fn global(&self, space: &WholeCloud<'_, S>) -> Result<GlobalDimension, Error> {
+        let cloud = space.cloud.ok_or_else(|| Error::Shape {
+            found: "distances without coordinates".into(),
+            expected: "coordinates, principal component analysis needs them".into(),
+        })?;
+        if cloud.len() < 3 {
+            return Err(Error::Shape {
+                found: format!("{} points", cloud.len()),
+                expected: "at least 3, to tell the dimension of a cloud".into(),
+            });
+        }
+        let frame = PrincipalFrame::of(cloud, 0..cloud.len());
+        let (dimension, value, confidence) = self.dimension_of(&frame.variances);
+        Ok(GlobalDimension {
+            dimension,
+            value,
+            standard_error: None,
+            confidence,
+            scales: [0.0, f64::INFINITY],
+            points: cloud.len(),
+        })
     }
 }

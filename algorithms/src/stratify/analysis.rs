@@ -1,5 +1,6 @@
 //! Which stratum every point of the cloud is in.
 
+use crate::audit::{self, Faults};
 use crate::execute::{self, Execute};
 use crate::moments::LocalDimension;
 use crate::principal::PrincipalFrame;
@@ -87,6 +88,8 @@ pub struct Analysis {
     pub(super) witnesses: Vec<Witness>,
     /// Points whose neighborhood shows a 0-stratum, with its place.
     pub(super) apexes: Vec<Witness>,
+    /// What models returned that cannot be used.
+    pub(super) faults: Faults,
 }
 
 /// A point whose neighborhood shows a curve or a 0-stratum close by.
@@ -233,6 +236,19 @@ pub(super) struct Scratch<S> {
     pub(super) near: Vec<Neighbor<S>>,
     rest: Vec<Neighbor<S>>,
     pub(super) local: Vec<f64>,
+    /// Where faults of models are told.
+    faults: Faults,
+}
+
+impl<S> Scratch<S> {
+    fn reporting(faults: &Faults) -> Self {
+        Self {
+            near: Vec::new(),
+            rest: Vec::new(),
+            local: Vec::new(),
+            faults: faults.clone(),
+        }
+    }
 }
 
 impl<S: Scalar> Analyzer<'_, S> {
@@ -279,10 +295,17 @@ impl<S: Scalar> Analyzer<'_, S> {
             unexplained: Vec::new(),
             witnesses: Vec::new(),
             apexes: Vec::new(),
+            faults: Faults::default(),
         };
+        audit::oracle(self.oracle, self.metric, options.eps)?;
+        audit::metric(self.metric, self.oracle)?;
+        for model in self.models {
+            audit::local_dimension(model.as_ref())?;
+        }
+        let scratch = || Scratch::reporting(&out.faults);
         let looked_at = !options.surface || self.models.iter().any(|m| m.finds_boundary());
         if looked_at {
-            let found = execute::map(self.execute, n, Scratch::default, |scratch, i| {
+            let found = execute::map(self.execute, n, scratch, |scratch, i| {
                 self.point(i, options, boundary[i], scratch)
             });
             let mut total = 0usize;
@@ -295,7 +318,8 @@ impl<S: Scalar> Analyzer<'_, S> {
                 out.apexes.extend(found.apex);
             }
             let again = self.beside_curves(&out, options.eps);
-            let more = execute::map(self.execute, again.len(), Scratch::default, |scratch, k| {
+            let scratch = || Scratch::reporting(&out.faults);
+            let more = execute::map(self.execute, again.len(), scratch, |scratch, k| {
                 self.explain(again[k], 3, options, scratch)
             });
             for (&i, (kind, apex)) in again.iter().zip(more) {
@@ -304,6 +328,7 @@ impl<S: Scalar> Analyzer<'_, S> {
                     out.apexes.extend(apex);
                 }
             }
+            out.faults.none()?;
             out.mean_neighbors = total as f64 / n.max(1) as f64;
             if out.unexplained.len() as f64 > UNEXPLAINED_SHARE * n as f64 {
                 let point = out.unexplained[0];
@@ -382,15 +407,14 @@ impl<S: Scalar> Analyzer<'_, S> {
                     metric: self.metric,
                     cloud: Some(self.cloud),
                 })?;
-                if !estimate.value.is_finite() || estimate.dimension > self.cloud.dimension() {
-                    return Err(Error::Law {
-                        plugin: estimator.name().into(),
-                        law: "a dimension between 0 and that of the space",
-                        point: i,
-                        detail: format!("{} ({})", estimate.dimension, estimate.value),
-                    });
-                }
-                (found, estimate.dimension)
+                let dimension = audit::dimension(
+                    estimator.name(),
+                    i,
+                    &estimate,
+                    found,
+                    self.cloud.dimension(),
+                )?;
+                (found, dimension)
             }
         };
         Ok((neighbors, dimension.min(255) as u8))
@@ -449,8 +473,10 @@ impl<S: Scalar> Analyzer<'_, S> {
             if silent || !model.applies_to(2) {
                 continue;
             }
+            let faults = scratch.faults.clone();
             let local = self.local(&view, model.as_ref(), scratch);
-            if let Ok(fit) = model.decompose(&local) {
+            let found = model.decompose(&local);
+            if let Some(fit) = audit::sound(found, &local, model.as_ref(), i, &faults) {
                 let score = score(&fit, eps);
                 if best.as_ref().is_none_or(|b| score < b.0) {
                     best = Some((score, m, fit));
@@ -496,8 +522,10 @@ impl<S: Scalar> Analyzer<'_, S> {
                 if view.frame.spreads_beyond(model.local_dimension()) {
                     continue;
                 }
+                let faults = scratch.faults.clone();
                 let local = self.local(&view, model.as_ref(), scratch);
-                let Ok(fit) = model.decompose(&local) else {
+                let found = model.decompose(&local);
+                let Some(fit) = audit::sound(found, &local, model.as_ref(), i, &faults) else {
                     continue;
                 };
                 let score = score(&fit, radius);
@@ -647,7 +675,8 @@ impl<S: Scalar> Analyzer<'_, S> {
         let radius = analysis.radii[i];
         let model = self.models[analysis.model[i] as usize].as_ref();
         let view = self.view(i, radius, LABEL_MARGIN * radius, scratch)?;
-        let fit = model.decompose(&self.local(&view, model, scratch)).ok()?;
+        let local = self.local(&view, model, scratch);
+        let fit = audit::sound(model.decompose(&local), &local, model, i, &analysis.faults)?;
         Some((fit, scratch.near.iter().map(|x| x.index).collect()))
     }
 }

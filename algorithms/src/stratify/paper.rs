@@ -177,6 +177,7 @@ impl Published {
             unexplained,
             witnesses: Vec::new(),
             apexes: Vec::new(),
+            faults: Default::default(),
         })
     }
 

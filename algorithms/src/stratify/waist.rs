@@ -3,6 +3,7 @@
 use super::analysis::{Analysis, Analyzer, Role};
 use super::cells::{CellGraph, Flood, Reference, references};
 use super::chains::{Curves, NODE_SPACING, more_references};
+use crate::audit;
 use crosscap_core::{
     CellNeighborhood, Error, LandmarkSelector, MetricSpace, Scalar, SparseDistances,
     StratifiedLandmarks, squared_distance,
@@ -98,6 +99,9 @@ pub fn stratify<S: Scalar>(
             });
         }
     }
+    if let Some(metric) = metric {
+        audit::metric(metric, analyzer.oracle)?;
+    }
     let n = analysis.roles.len();
     let mut near = Vec::new();
     let gap = 2.0 * NODE_SPACING * options.dl;
@@ -136,6 +140,7 @@ pub fn stratify<S: Scalar>(
     }
     let graph = CellGraph::new(analyzer, analysis, &refs);
 
+    analysis.faults.none()?;
     let mut rows = curves.rows.clone();
     let candidates = free_of_edges(analyzer, analysis, &curves);
     let taken = &curves.rows;
@@ -146,6 +151,13 @@ pub fn stratify<S: Scalar>(
         options.dl,
         options.seed,
     )?;
+    let question = audit::Question {
+        plugin: selector.name(),
+        candidates: &candidates,
+        taken,
+        separation: options.dl,
+    };
+    audit::selection(analyzer.oracle, &question, &chosen)?;
     rows.extend(&chosen);
     for &row in &options.extra {
         if row < n && analysis.roles[row] == Role::Regular && !chosen.contains(&row) {
@@ -228,17 +240,16 @@ pub fn stratify<S: Scalar>(
     }
     pairs.sort_unstable();
     pairs.dedup();
-    let distances = SparseDistances::new(
-        rows.len(),
-        pairs.iter().map(|&(a, b)| {
-            let (p, q) = (rows[a as usize], rows[b as usize]);
-            let d = match metric {
-                Some(metric) => metric.distance(p, q),
-                None => S::of(places.squared_distance(p, q).sqrt()),
-            };
-            (a, b, d)
-        }),
-    )?;
+    let mut lengths = Vec::with_capacity(pairs.len());
+    for (a, b) in pairs {
+        let (p, q) = (rows[a as usize], rows[b as usize]);
+        let d = match metric {
+            Some(metric) => audit::distance(metric, p, q)?,
+            None => S::of(places.squared_distance(p, q).sqrt()),
+        };
+        lengths.push((a, b, d));
+    }
+    let distances = SparseDistances::new(rows.len(), lengths)?;
     let counts = StratifyCounts {
         landmarks: rows.len(),
         curve_landmarks: curves.rows.len(),

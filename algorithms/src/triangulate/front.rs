@@ -2,12 +2,14 @@
 
 use super::Rules;
 use super::star::Patch;
+use crate::audit::{AuditedChart, AuditedRule, AuditedTest, Watch, known_pairs};
 use crosscap_core::{
     CompatibilityTest, Complex, CurveEdge, Error, LocalChart, Scalar, StratifiedLandmarks,
     TriangleRule,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
+use std::sync::atomic::AtomicU32;
 
 /// Triangulates the waist.
 pub struct Triangulator<'a> {
@@ -233,7 +235,9 @@ impl Triangulator<'_> {
     /// undone, so that a site that cannot be triangulated stays where it is.
     ///
     /// # Errors
-    /// Those of [`StratifiedLandmarks::check`]; [`Error::Law`] for a chart that is not finite.
+    /// Those of [`StratifiedLandmarks::check`] and of the chart; [`Error::Law`], whose point is the landmark, for a chart
+    /// of the wrong size or not finite, a test that is not symmetric, a rank that is NaN or depends on the
+    /// order of the ends, or a triangle without area that does not rank last.
     ///
     /// O(L k^2) for L landmarks with k members in a neighborhood, plus the charts.
     pub fn triangulate<S: Scalar>(
@@ -241,6 +245,30 @@ impl Triangulator<'_> {
         input: &StratifiedLandmarks<S>,
     ) -> Result<Triangulation, Error> {
         input.check()?;
+        let first = input.neighborhoods.first().and_then(|near| {
+            let (&a, &b) = (near.members.first()?, near.members.get(1)?);
+            input.distances.get(a, b)
+        });
+        let size = first.map_or(1.0, Scalar::as_f64);
+        known_pairs(self.test, if size > 0.0 { size } else { 1.0 })?;
+        let watch = Watch::default();
+        let parts = &Triangulator {
+            chart: &AuditedChart {
+                chart: self.chart,
+                watch: &watch,
+            },
+            test: &AuditedTest {
+                test: self.test,
+                watch: &watch,
+                calls: AtomicU32::new(0),
+            },
+            rule: &AuditedRule {
+                rule: self.rule,
+                watch: &watch,
+                calls: AtomicU32::new(0),
+            },
+            ..*self
+        };
         let count = input.strata.len();
         let mut curve = vec![Vec::new(); count];
         for e in &input.curve_edges {
@@ -249,7 +277,7 @@ impl Triangulator<'_> {
             curve[b as usize].push((a, e.cells));
         }
         let mut front = Front {
-            parts: self,
+            parts,
             input,
             triangles: Vec::new(),
             free: Vec::new(),
@@ -271,6 +299,7 @@ impl Triangulator<'_> {
             }
         }
         let mut run = Run {
+            watch: &watch,
             front: &mut front,
             home,
             sectors,
@@ -303,6 +332,8 @@ impl Triangulator<'_> {
 
 /// One triangulation under way.
 struct Run<'r, 'a, S: Scalar> {
+    /// What the plug-ins did wrong.
+    watch: &'r Watch,
     front: &'r mut Front<'a, S>,
     /// Neighborhood of each landmark of a cell.
     home: Vec<usize>,
@@ -397,9 +428,11 @@ impl<S: Scalar> Run<'_, '_, S> {
         self.counts.visits += 1;
         let input = self.front.input;
         let mut kept = std::mem::take(&mut self.kept);
+        self.watch.enter(input.neighborhoods[k].center);
         let mut patch = Patch::new(self.front, &input.neighborhoods[k], &mut kept)?;
         let closed = patch.close(self.front);
         self.kept = kept;
+        self.watch.none()?;
         Ok(closed)
     }
 

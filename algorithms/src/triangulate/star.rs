@@ -63,14 +63,6 @@ impl<'a> Patch<'a> {
             }
         }
         let chart = front.parts.chart.chart(k, &distances, 2)?;
-        if chart.coordinates.len() != 2 * k || chart.coordinates.iter().any(|c| !c.is_finite()) {
-            return Err(Error::Law {
-                plugin: front.parts.chart.name().into(),
-                law: "finite distances give finite coordinates",
-                point: near.center as usize,
-                detail: format!("{} coordinates for {k} points", chart.coordinates.len()),
-            });
-        }
         let places: Vec<[f64; 2]> = chart
             .coordinates
             .chunks_exact(2)

@@ -23,6 +23,16 @@ static ANSWER: Law = Law {
                neighbors minus one; a spectrum whose sum is 0; random numbers without a fixed seed",
 };
 
+/// A whole number.
+static ROUNDED: Law = Law {
+    subject: SUBJECT,
+    name: "rounded",
+    says: "the dimension is the value rounded, and less than the number of points: k points span at most \
+           k - 1 dimensions",
+    look_for: "a value that was left at its default (it equals the dimension for estimators that count); \
+               rounding up or down where the nearest whole number is meant",
+};
+
 /// Motion.
 static MOTION: Law = Law {
     subject: SUBJECT,
@@ -57,7 +67,7 @@ static ORDER: Law = Law {
     look_for: "a subset picked by index (the first half, every second one): pick by distance, or all",
 };
 
-pub(super) static ALL: [&Law; 5] = [&ANSWER, &MOTION, &SCALE, &EMBEDDING, &ORDER];
+pub(super) static ALL: [&Law; 6] = [&ANSWER, &ROUNDED, &MOTION, &SCALE, &EMBEDDING, &ORDER];
 
 /// The neighborhood of the first point that holds all.
 struct Ball<S> {
@@ -188,6 +198,23 @@ pub fn estimator<D: DimensionEstimator>(
         ensure!(first == again, "asked twice: {first:?}, then {again:?}");
         Ok(())
     })?;
+    ROUNDED.holds(settings, &all_kinds, |cloud| {
+        if let Ok(found) = Ball::new(cloud, 0).estimate(estimator) {
+            let DimensionEstimate {
+                dimension, value, ..
+            } = found;
+            ensure!(
+                (value - dimension as f64).abs() <= 0.5 + 1e-6,
+                "dimension {dimension} for the value {value}"
+            );
+            ensure!(
+                dimension < cloud.len(),
+                "dimension {dimension} from {} points",
+                cloud.len()
+            );
+        }
+        Ok(())
+    })?;
     let ask = |cloud: &PointCloud<f64>, center| Ball::new(cloud, center).estimate(estimator);
     let moved =
         |law: &'static Law, dimensions: usize, change: fn(&Motion, f64) -> (Motion, f64)| {
@@ -295,6 +322,28 @@ mod tests {
             put(|around| mean(around, |n| n.distance.ln().abs())),
             &ANSWER,
         );
+    }
+
+    #[test]
+    fn a_dimension_that_is_not_the_value_is_caught() {
+        struct Up(f64);
+        impl DimensionEstimator for Up {
+            type Scalar = f64;
+            fn estimate(&self, around: &Neighborhood<'_, f64>) -> Result<DimensionEstimate, Error> {
+                let value = self.0 * around.neighbors.len() as f64;
+                Ok(DimensionEstimate {
+                    dimension: value.ceil() as usize,
+                    value,
+                    ..Default::default()
+                })
+            }
+            fn name(&self) -> &str {
+                "up"
+            }
+        }
+        catches(estimator(&Settings::default(), &Up(0.05)), &ROUNDED);
+        // As many dimensions as points.
+        catches(estimator(&Settings::default(), &Up(1.0)), &ROUNDED);
     }
 
     #[test]

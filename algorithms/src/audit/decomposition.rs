@@ -1,0 +1,94 @@
+//! Decompositions by singularity models.
+
+use super::{Faults, broken};
+use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel};
+
+/// Refuses a model whose coordinates could not be given to it.
+///
+/// # Errors
+/// [`Error::Law`] for a local dimension of 0.
+pub(crate) fn local_dimension(model: &dyn SingularityModel) -> Result<(), Error> {
+    if model.local_dimension() > 0 {
+        return Ok(());
+    }
+    let law = "local_dimension is the number of coordinates that the model works in";
+    broken(model.name(), law, 0, "0 coordinates".into())
+}
+
+/// The decomposition of the neighborhood of `point`, if the model has one that can be used; what is wrong with one
+/// that cannot is remembered.
+pub(crate) fn sound(
+    found: Result<Decomposition, Rejection>,
+    local: &LocalPoints<'_>,
+    model: &dyn SingularityModel,
+    point: usize,
+    faults: &Faults,
+) -> Option<Decomposition> {
+    let fit = found.ok()?;
+    match check(&fit, local, model.name(), point) {
+        Ok(()) => Some(fit),
+        Err(error) => {
+            faults.add(point, error);
+            None
+        }
+    }
+}
+
+fn check(
+    fit: &Decomposition,
+    local: &LocalPoints<'_>,
+    plugin: &str,
+    point: usize,
+) -> Result<(), Error> {
+    let partition = "partition: every point has exactly one label";
+    if fit.labels.len() != local.len() {
+        let detail = format!("{} labels for {} points", fit.labels.len(), local.len());
+        return broken(plugin, partition, point, detail);
+    }
+    let strata = fit.strata.len();
+    if let Some(k) = fit.labels.iter().position(|&l| l as usize >= strata) {
+        let detail = format!("label {} of {strata} strata", fit.labels[k]);
+        return broken(plugin, partition, point, detail);
+    }
+    let order = "strata of lowest dimension first, none above 2";
+    let dimensions: Vec<u8> = fit.strata.iter().map(|s| s.dimension).collect();
+    if !dimensions.is_sorted() || dimensions.iter().any(|&d| d > 2) {
+        return broken(plugin, order, point, format!("dimensions {dimensions:?}"));
+    }
+    let curves = dimensions.iter().filter(|&&d| d == 1).count();
+    let cells = "cells_at_curve: the number of cells at every curve";
+    if fit.cells_at_curve.len() != curves {
+        let detail = format!("{:?} for {curves} curves", fit.cells_at_curve);
+        return broken(plugin, cells, point, detail);
+    }
+    let cell = |l: u8| dimensions.get(l as usize) == Some(&2);
+    let pairs = &fit.continuations;
+    if let Some(&(a, b)) = pairs
+        .iter()
+        .find(|c| !cell(c.0) || !cell(c.1) || c.0 == c.1)
+    {
+        let law = "continuations pair different cells";
+        return broken(
+            plugin,
+            law,
+            point,
+            format!("strata {a} and {b} of {dimensions:?}"),
+        );
+    }
+    if !(fit.residual.is_finite() && fit.residual >= 0.0) {
+        let law = "the residual is finite and at least 0";
+        return broken(plugin, law, point, format!("{}", fit.residual));
+    }
+    // In a cell the singular stratum may be out of sight.
+    let on_it = dimensions[fit.labels[local.center] as usize] < 2;
+    if !(fit.center_offset >= 0.0 && (fit.center_offset.is_finite() || !on_it)) {
+        let law =
+            "the center offset is at least 0, and finite where the center is on a curve or point";
+        return broken(plugin, law, point, format!("{}", fit.center_offset));
+    }
+    if fit.center.len() != local.dimension || fit.center.iter().any(|c| !c.is_finite()) {
+        let law = "the center has finite coordinates, local_dimension of them";
+        return broken(plugin, law, point, format!("{:?}", fit.center));
+    }
+    Ok(())
+}

@@ -1,0 +1,60 @@
+//! What plug-ins return, checked before it is believed.
+//!
+//! The law kit tries a plug-in on drawn inputs before it is used; these checks see what it returns on
+//! the data at hand. Each is cheap beside the call that it follows: what costs little is checked
+//! whole, the rest at places spread over the data.
+//!
+//! | plug-in | checked | where |
+//! | --- | --- | --- |
+//! | metric | never NaN, identity, symmetry, triangle inequality | among the neighbors of 64 points; every distance used for NaN |
+//! | oracle | range, order, strictness, agreement of both queries and with the metric | at 64 points |
+//! | estimator | finite value, confidence, rounding, bound | every answer |
+//! | singularity model | partition, order of strata, curves, continuations, residual, center | every decomposition |
+//! | selector | candidates only, separation, covering | whole |
+//! | chart | size, finite coordinates, distortion | every chart |
+//! | compatibility test | symmetry, known pairs | once; every "no", and every 16th answer |
+//! | triangle rule | never NaN, symmetry, a triangle without area last | every rank; the last two every 16th |
+//!
+//! What was found is an [`Error::Law`](crosscap_core::Error::Law) with the plug-in, the law as the trait words it, and the
+//! point.
+
+mod decomposition;
+mod distances;
+mod estimate;
+mod faults;
+mod oracle;
+mod selection;
+mod triangulation;
+
+pub(crate) use decomposition::{local_dimension, sound};
+pub(crate) use distances::{distance, metric};
+pub(crate) use estimate::dimension;
+pub(crate) use faults::Faults;
+pub(crate) use oracle::oracle;
+pub(crate) use selection::{Question, selection};
+pub(crate) use triangulation::{AuditedChart, AuditedRule, AuditedTest, Watch, known_pairs};
+
+use crosscap_core::{Error, Scalar};
+
+fn broken<T>(plugin: &str, law: &'static str, point: usize, detail: String) -> Result<T, Error> {
+    Err(Error::Law {
+        plugin: plugin.into(),
+        law,
+        point,
+        detail,
+    })
+}
+
+/// Points at which spot checks are made.
+const SAMPLES: usize = 64;
+
+/// Rows spread evenly over `count`.
+fn spread(count: usize, samples: usize) -> impl Iterator<Item = usize> {
+    let samples = samples.min(count);
+    (0..samples).map(move |k| k * count / samples)
+}
+
+/// Relative difference that rounding of `S` is allowed to make.
+fn slack<S: Scalar>() -> f64 {
+    S::default_epsilon().as_f64().sqrt()
+}

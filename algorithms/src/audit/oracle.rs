@@ -1,0 +1,119 @@
+//! Neighborhood oracles.
+
+use super::{SAMPLES, broken, slack, spread};
+use crosscap_core::{Error, MetricSpace, Neighbor, NeighborhoodOracle, Scalar};
+
+/// Name of an oracle, which has none, in reports.
+const PLUGIN: &str = "neighborhood oracle";
+/// Neighbors asked for.
+const NEIGHBORS: usize = 12;
+
+/// Asks an oracle for the neighborhoods of 64 points, and compares its answers with each other and
+/// with the metric.
+///
+/// # Errors
+/// [`Error::Law`] for an index out of range, a distance that is not finite or not below the radius, an
+/// order that is not by distance and index, a neighborhood without its center, points within the
+/// distance of the farthest of the nearest that are not among these, a distance that is not the metric's.
+pub(crate) fn oracle<S: Scalar>(
+    oracle: &dyn NeighborhoodOracle<Scalar = S>,
+    metric: &dyn MetricSpace<Scalar = S>,
+    eps: f64,
+) -> Result<(), Error> {
+    let count = oracle.len();
+    if metric.len() != count {
+        return Err(Error::Shape {
+            found: format!("metric {} on {} points", metric.name(), metric.len()),
+            expected: format!("{count}, as many as the oracle has"),
+        });
+    }
+    let (mut near, mut nearest) = (Vec::new(), Vec::new());
+    for center in spread(count, SAMPLES) {
+        oracle.within(center, S::of(eps), &mut near);
+        listed(center, &near, count)?;
+        if let Some(x) = near.iter().find(|x| x.distance >= S::of(eps)) {
+            let detail = format!(
+                "point {} at distance {}, radius {eps}",
+                x.index,
+                x.distance.as_f64()
+            );
+            return broken(
+                PLUGIN,
+                "strictness: within takes points at distance < radius",
+                center,
+                detail,
+            );
+        }
+        if !near.iter().any(|x| x.index == center) {
+            let detail = format!("{} points, not the center", near.len());
+            return broken(
+                PLUGIN,
+                "strictness: the center is among the points within",
+                center,
+                detail,
+            );
+        }
+        oracle.nearest(center, NEIGHBORS, &mut nearest);
+        listed(center, &nearest, count)?;
+        if nearest.len() != NEIGHBORS.min(count) {
+            let detail = format!("{} points of the {NEIGHBORS} nearest", nearest.len());
+            return broken(PLUGIN, "equals brute force", center, detail);
+        }
+        // All that is nearer than the last of them must be among them, in the same order.
+        let last = nearest.last().map_or(S::zero(), |x| x.distance);
+        let before = nearest.partition_point(|x| x.distance < last);
+        oracle.within(center, last, &mut near);
+        let same = |a: &[Neighbor<S>], b: &[Neighbor<S>]| {
+            a.iter().map(|x| x.index).eq(b.iter().map(|x| x.index))
+        };
+        if last > S::zero() && !same(&near, &nearest[..before]) {
+            let detail = format!(
+                "{} points within {}, {before} by the query for the nearest",
+                near.len(),
+                last.as_f64()
+            );
+            return broken(PLUGIN, "equals brute force", center, detail);
+        }
+        for x in [nearest.get(1), nearest.last()].into_iter().flatten() {
+            let (told, true_one) = (
+                x.distance.as_f64(),
+                metric.distance(center, x.index).as_f64(),
+            );
+            if (told - true_one).abs() > slack::<S>() * told.max(true_one) {
+                let detail = format!(
+                    "distance {told} to point {}, {true_one} by the metric {}",
+                    x.index,
+                    metric.name()
+                );
+                return broken(PLUGIN, "equals brute force", center, detail);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn listed<S: Scalar>(center: usize, found: &[Neighbor<S>], count: usize) -> Result<(), Error> {
+    for x in found {
+        if x.index >= count {
+            let detail = format!("point {} of {count}", x.index);
+            return broken(PLUGIN, "equals brute force", center, detail);
+        }
+        if !x.distance.is_finite() || x.distance < S::zero() {
+            let detail = format!("distance {} to point {}", x.distance.as_f64(), x.index);
+            return broken(PLUGIN, "equals brute force", center, detail);
+        }
+    }
+    for pair in found.windows(2) {
+        let key = |x: &Neighbor<S>| (x.distance.as_f64(), x.index);
+        if key(&pair[0]) >= key(&pair[1]) {
+            let detail = format!("point {} before point {}", pair[0].index, pair[1].index);
+            return broken(
+                PLUGIN,
+                "order: sorted by distance, ties by index",
+                center,
+                detail,
+            );
+        }
+    }
+    Ok(())
+}
