@@ -1,6 +1,7 @@
 //! The mathematics of Crosscap: models of the traits of `crosscap-core` that need nobody
 //! else's engine, the triangulator, homology, and the verdict on a mesh.
 
+pub mod alignment;
 pub mod certificate;
 pub mod chart;
 pub mod dimension;

@@ -27,12 +27,14 @@
 //! triangles on 100 vertices, near the threshold where its H2 appears, takes 3 seconds.
 
 mod elimination;
+mod local;
 mod prime;
 pub(crate) mod sides;
 pub(crate) mod signed_union;
 mod smith;
 
 pub use elimination::betti_by_elimination;
+pub use local::{LocalFailure, LocalHomology, local_homology};
 
 use crosscap_core::{Complex, Error};
 use num_bigint::BigUint;
