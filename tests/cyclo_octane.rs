@@ -95,6 +95,7 @@ fn a_sample_of_our_own() {
     let local = local_homology(complex, &oracle, 0.35, &Serial).unwrap();
     assert_eq!(local.neighborhoods, complex.vertices);
     assert!(local.failures.is_empty(), "{:?}", local.failures);
+    assert_eq!(local.other_sheets, 0);
 }
 
 /// Every 30th of the public landmark set of the paper (see `tests/data/README.md`), moved onto the variety that the

@@ -54,8 +54,8 @@ pub struct Check {
 
     /// Check every neighborhood of a vertex too: its part of the mesh must have Betti numbers 1, 0, 0
     ///
-    /// The paper's own check. The part of the mesh that the vertices within eps span is contractible when the mesh is
-    /// good and the ball small enough for the surface.
+    /// The paper's own check. What the vertices within eps span, as far as it hangs together with the vertex, is
+    /// contractible when the mesh is good and the ball small enough for the surface.
     #[arg(long)]
     local: bool,
 
@@ -208,8 +208,14 @@ fn told(local: &LocalHomology, mesh: &Mesh) -> String {
         local.radius,
         counted(local.median_members, "vertex")
     );
+    let others = match local.other_sheets {
+        0 => String::new(),
+        n => format!(
+            "\n           {n} of the balls hold a part of another sheet, which does not meet theirs in them"
+        ),
+    };
     let Some(first) = local.failures.first() else {
-        return format!("local      {all}: all have Betti numbers 1, 0, 0");
+        return format!("local      {all}: all have Betti numbers 1, 0, 0{others}");
     };
     let vertex = first.vertex as usize;
     let row = match mesh.point_index[vertex] {
@@ -225,7 +231,7 @@ fn told(local: &LocalHomology, mesh: &Mesh) -> String {
     };
     format!(
         "local      {all}: {} not 1, 0, 0 over Q and Z/2, first at vertex {vertex}{row} at ({}{more}): {} over Q, {} \
-         over Z/2. To change: a smaller --eps if the surface is not a disc within it, else the mesh is wrong there",
+         over Z/2. To change: a smaller --eps if the surface is no disc within it, else the mesh is wrong there{others}",
         local.failures.len(),
         place.join(", "),
         betti(first.betti_rational),
