@@ -576,7 +576,289 @@ fn conformations_keep_their_bonds() {
     }
 }
 
+#[test]
+fn other_bonds_and_angles_are_another_ring() {
+    let room = Room::new();
+    room.run(
+        "sample cyclo-octane -n 300 --bond-length 1.5 --bond-angle 128 --thin 0.1 -o ring.npy",
+    )
+    .expect(0)
+    .says("points in R^24");
+    let points = room.points("ring.npy");
+    assert!(points.len() > 100);
+    for (k, p) in points.iter().enumerate() {
+        let distance = |a: usize, b: usize| {
+            let square: f64 = (0..3).map(|c| (p[3 * a + c] - p[3 * b + c]).powi(2)).sum();
+            square.sqrt()
+        };
+        let across = 3.0 * 64f64.to_radians().sin();
+        for atom in 0..8 {
+            assert!((distance(atom, (atom + 1) % 8) - 1.5).abs() < 1e-9);
+            assert!((distance(atom, (atom + 2) % 8) - across).abs() < 1e-9);
+        }
+        for other in 0..k {
+            assert!(points.squared_distance(k, other) >= 0.01);
+        }
+    }
+    room.run("sample cyclo-octane --bond-angle 140 -o no.npy")
+        .expect(2)
+        .complains("make the bond angles smaller");
+    room.run("sample sphere --bond-length 1 -o no.npy")
+        .expect(2)
+        .complains("has no bonds");
+    assert_eq!(room.files(), ["ring.npy"]);
+}
+
+// Molecules
+
+/// Conformations as frames of a molecule with hydrogens, each turned and carried away: `.xyz` and `.pdb`.
+fn trajectories(conformations: &PointCloud<f64>) -> [String; 2] {
+    let (mut xyz, mut pdb) = (String::new(), String::new());
+    let mut random = Random::new(3);
+    for (k, p) in conformations.iter().enumerate() {
+        let [a, b, c]: [f64; 3] = [0; 3].map(|_| random.between(-3.0, 3.0));
+        let shift: [f64; 3] = [0; 3].map(|_| random.between(-20.0, 20.0));
+        // Three turns about the axes.
+        let place = |atom: usize, stretch: f64| {
+            let mut q: [f64; 3] = std::array::from_fn(|i| stretch * p[3 * atom + i]);
+            for (axis, angle) in [(2, a), (0, b), (2, c)] {
+                let (s, c) = angle.sin_cos();
+                let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+                (q[i], q[j]) = (c * q[i] - s * q[j], s * q[i] + c * q[j]);
+            }
+            std::array::from_fn::<f64, 3, _>(|i| q[i] + shift[i])
+        };
+        xyz += &format!("16\nframe {k}\n");
+        pdb += &format!("MODEL     {:>4}\n", k + 1);
+        for atom in 0..8 {
+            // A hydrogen outside of each carbon.
+            for (element, stretch) in [("C", 1.0), ("H", 1.4)] {
+                let [x, y, z] = place(atom, stretch);
+                xyz += &format!("{element} {x:.9} {y:.9} {z:.9}\n");
+                pdb += &format!(
+                    "HETATM{:>5} {:<4} RNG A   1    {x:8.3}{y:8.3}{z:8.3}  1.00  0.00          {element:>2}\n",
+                    2 * atom + 1,
+                    format!(" {element}{atom}")
+                );
+            }
+        }
+        pdb += "ENDMDL\n";
+    }
+    [xyz, pdb]
+}
+
+#[test]
+fn a_trajectory_becomes_a_surface() {
+    let room = Room::new();
+    let ring = crosscap_algorithms::surfaces::RingConformations::new(8, 1.52, 130.0).unwrap();
+    let drawn = ring.sample(12_000, 1).unwrap().points;
+    let [xyz, _] = trajectories(&drawn);
+    room.write("ring.xyz", xyz);
+    write_points(room.path("first.npy"), &drawn.select(&[0])).unwrap();
+    let parameters = "--eps 0.25 --dl 0.14 --dp 0.08 --ep 0.03";
+    let said = room
+        .run(&format!(
+            "reconstruct ring.xyz --atoms element:C --align kabsch --reference first.npy {parameters} -o ring.npz"
+        ))
+        .expect(0)
+        .out;
+    assert!(said.contains("in R^24"), "{said}");
+    assert!(said.contains("meet in two circles"), "{said}");
+    let mesh = read_mesh(room.path("ring.npz")).unwrap().mesh;
+    // Its rows are those of the frames, and off the double curves its vertices the conformations, in the position of
+    // the reference.
+    let singular: Vec<u32> = mesh
+        .complex
+        .curve_edges
+        .iter()
+        .flat_map(|e| e.ends)
+        .collect();
+    let first = crosscap_algorithms::alignment::Alignment::new(
+        drawn.point(0).as_chunks::<3>().0,
+        &[1.0; 8],
+    );
+    let first = first.unwrap();
+    for v in (0..mesh.complex.vertices).filter(|&v| !singular.contains(&(v as u32))) {
+        let aligned = first.align(drawn.point(mesh.point_index[v] as usize)).place;
+        let far = mesh.vertices.point(v).iter().zip(&aligned);
+        assert!(far.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max) < 1e-7);
+    }
+    // The check reads the points in the same way.
+    let check = "check ring.npz --points ring.xyz --atoms element:C --reference first.npy --local --eps 0.25";
+    room.run(check)
+        .expect(0)
+        .says("all have Betti numbers 1, 0, 0");
+}
+
+#[test]
+fn models_are_aligned_as_frames_are() {
+    let room = Room::new();
+    let ring = crosscap_algorithms::surfaces::RingConformations::new(8, 1.52, 130.0).unwrap();
+    let drawn = ring.sample(400, 2).unwrap().points;
+    let [xyz, pdb] = trajectories(&drawn);
+    room.write("ring.xyz", xyz);
+    room.write("ring.pdb", pdb);
+    // Too few points for a mesh that is good, enough to see which points were taken.
+    let places = |arguments: &str| {
+        room.run(&format!(
+            "reconstruct {arguments} --eps 1 --dl 0.2 --surface --keep-unverified -o out.npz"
+        ));
+        let mesh = read_mesh(room.path("out.npz")).unwrap().mesh;
+        std::fs::remove_file(room.path("out.npz")).unwrap();
+        mesh
+    };
+    let kabsch = places("ring.xyz --atoms heavy --reference frame:7");
+    assert_eq!(kabsch.vertices.dimension(), 24);
+    let models = places("ring.pdb --atoms 1,3,5,7,9,11,13,15 --align kabsch --reference frame:7");
+    for (a, b) in [(&kabsch, &models)] {
+        // Three decimals of a .pdb: the same rows lie within 0.01 of each other.
+        for v in 0..a.complex.vertices.min(b.complex.vertices) {
+            let row = a.point_index[v];
+            if let Some(w) = b.point_index.iter().position(|&r| r == row) {
+                let far = crosscap_core::squared_distance(a.vertices.point(v), b.vertices.point(w));
+                assert!(far.sqrt() < 0.01, "{far}");
+            }
+        }
+    }
+    // With hydrogens the two positions differ: Eckart's weighs carbon twelve times as much.
+    let eckart = places("ring.xyz --align eckart --reference frame:7");
+    let equal = places("ring.xyz --align kabsch --reference frame:7");
+    assert_eq!(eckart.vertices.dimension(), 48);
+    let center = |mesh: &Mesh, weights: [f64; 2]| {
+        let mut sum = 0.0f64;
+        for p in mesh.vertices.iter() {
+            for c in 0..3 {
+                let each = p.iter().skip(c).step_by(3).enumerate();
+                sum = sum.max(
+                    each.map(|(atom, x)| weights[atom % 2] * x)
+                        .sum::<f64>()
+                        .abs(),
+                );
+            }
+        }
+        sum
+    };
+    assert!(center(&eckart, [12.011, 1.008]) < 1e-6);
+    assert!(center(&equal, [1.0, 1.0]) < 1e-6);
+    // As they stand, frames are far apart.
+    let plain = places("ring.xyz --atoms heavy --align none");
+    assert!(center(&plain, [1.0, 1.0]) > 10.0);
+}
+
+#[test]
+fn bad_molecules_are_refused_with_place_and_advice() {
+    let room = Room::new();
+    let frame = "4\n\nC 0 0 0\nX 1 0 0\nC 0 1 0\nH 0 0 1\n";
+    room.write("a.xyz", frame.repeat(10));
+    room.write("line.xyz", "3\n\nC 0 0 0\nC 1 0 0\nC 2 0 0\n".repeat(10));
+    room.write("two.csv", "0,0\n1,1\n".repeat(10));
+    let run = |arguments: &str| {
+        room.run(&format!(
+            "reconstruct {arguments} --eps 1 --dl 0.5 -o m.npz"
+        ))
+    };
+    for (arguments, complaint) in [
+        ("a.xyz --atoms 5", "expected 1 to 4"),
+        ("a.xyz --atoms N", "which no atom is called"),
+        ("a.xyz --align eckart", "for the element of atom 2 (\"X\")"),
+        ("a.xyz --reference frame:11", "expected frame:1 to frame:10"),
+        ("a.xyz --reference frame:0", "expected frame:1 to frame:10"),
+        ("a.xyz --align none --reference frame:1", "leave it out"),
+        ("a.xyz --reference line.xyz", "expected 12"),
+        ("a.xyz --reference missing.xyz", "missing.xyz: no such file"),
+        ("line.xyz --align kabsch", "on a line"),
+        ("two.csv --align kabsch", "three coordinates an atom"),
+        ("a.xyz --align best", "kabsch"),
+    ] {
+        run(arguments).expect(2).complains(complaint);
+    }
+    assert_eq!(room.files().len(), 3);
+}
+
 // Checks
+
+#[test]
+fn neighborhoods_are_checked_one_by_one() {
+    let room = Room::new();
+    room.run("sample sphere -n 4000 --seed 1 -o sphere.npy")
+        .expect(0);
+    room.run("reconstruct sphere.npy -o sphere.npz --eps 0.4 --dl 0.2 --surface")
+        .expect(0);
+    room.run("check sphere.npz --local")
+        .expect(0)
+        .says("of radius 0.4")
+        .says("all have Betti numbers 1, 0, 0");
+    // A ball that holds all of the sphere but a cap is contractible still; one that holds all of it is not.
+    room.run("check sphere.npz --local --eps 2.1")
+        .expect(1)
+        .says("1, 0, 1 over Q")
+        .says("first at vertex 0 (point")
+        .says("a smaller --eps")
+        .complains("neighborhoods that are not contractible");
+    let found = room
+        .run("check sphere.npz --local --eps 2.1 --json")
+        .expect(1)
+        .json();
+    assert_eq!(found["verified"], false);
+    let failures = found["local"]["failures"].as_array().unwrap();
+    assert_eq!(
+        failures.len() as u64,
+        found["local"]["neighborhoods"].as_u64().unwrap()
+    );
+    room.run("check sphere.npz --local --eps 0.05")
+        .expect(2)
+        .complains("is not above the median edge");
+    room.run("check sphere.npz --eps 0.4")
+        .expect(2)
+        .complains("--local");
+    room.mesh("bare.npz", &octahedron());
+    room.run("check bare.npz --local")
+        .expect(2)
+        .complains("give --eps");
+}
+
+#[test]
+fn junctions_and_bare_curves_are_described() {
+    // Three caps on one circle, and a line through the middle one.
+    let n = 12u32;
+    let mut places = Vec::new();
+    let mut triangles = Vec::new();
+    for k in 0..n {
+        let (s, c) = (TAU * f64::from(k) / f64::from(n)).sin_cos();
+        places.extend([c, s, 0.0]);
+    }
+    for (cap, top) in [(0, 1.0), (1, 0.0), (2, -1.0)] {
+        for k in 0..n {
+            let (s, c) = (TAU * f64::from(k) / f64::from(n)).sin_cos();
+            places.extend([0.6 * c, 0.6 * s, 0.7 * top]);
+            let ring = |k: u32| n + cap * (n + 1) + k % n;
+            let (p, q) = (k, (k + 1) % n);
+            triangles.extend([[p, q, ring(k)], [q, ring(k), ring(k + 1)]]);
+            triangles.push([ring(k), ring(k + 1), n + cap * (n + 1) + n]);
+        }
+        places.extend([0.0, 0.0, top]);
+    }
+    let middle = n + (n + 1) + n;
+    let line = places.len() as u32 / 3;
+    places.extend([0.0, 0.0, 0.3, 0.0, 0.0, -0.3]);
+    let mut curves: Vec<CurveEdge> = (0..n).map(|k| CurveEdge::new(k, (k + 1) % n, 3)).collect();
+    curves.extend([
+        CurveEdge::new(middle, line, 0),
+        CurveEdge::new(middle, line + 1, 0),
+    ]);
+    let room = Room::new();
+    room.mesh("bubble.npz", &mesh(3, places, triangles, curves));
+    let said = room.run("check bubble.npz --closed").expect(0).out;
+    assert!(
+        said.contains("end in one circle of three cells (angles"),
+        "{said}"
+    );
+    assert!(
+        said.contains("One bare arc goes through disc 2 in one point."),
+        "{said}"
+    );
+    assert!(said.contains("1, 0, 2 over Q"), "{said}");
+}
 
 #[test]
 fn a_good_mesh_is_verified() {

@@ -2,6 +2,7 @@
 //! else's engine, the triangulator, homology, and the verdict on a mesh.
 
 mod audit;
+pub mod alignment;
 pub mod certificate;
 pub mod chart;
 pub mod dimension;

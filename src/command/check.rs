@@ -2,15 +2,18 @@
 
 use super::failure::Failure;
 use super::findings::{Findings, pretty};
-use super::number::positive;
+use super::number::{betti, counted, median, positive};
 use super::output;
 use super::points::PointArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
 use crosscap_algorithms::certificate::{CertificateOptions, certify};
-use crosscap_algorithms::homology::homology;
+use crosscap_algorithms::homology::{LocalHomology, homology, local_homology};
 use crosscap_algorithms::pieces::pieces;
-use crosscap_backends::files::{MESH_EXTENSIONS, MeshExtras, read_mesh, read_points, write_mesh};
+use crosscap_backends::euclidean::EuclideanOracle;
+use crosscap_backends::files::{MESH_EXTENSIONS, MeshExtras, read_mesh, write_mesh};
+use crosscap_backends::parallel::Threads;
+use crosscap_core::Mesh;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -22,6 +25,7 @@ Exit code 0: verified; 1: not verified.
 Examples:
   crosscap check mesh.npz
   crosscap check mesh.npz --points points.npy --dl 0.1
+  crosscap check mesh.npz --local --eps 0.25
   crosscap check mesh.npz --json > verdict.json
   crosscap check klein.npz --normalization bottle.npz";
 
@@ -48,6 +52,17 @@ pub struct Check {
     #[arg(long)]
     closed: bool,
 
+    /// Check every neighborhood of a vertex too: its part of the mesh must have Betti numbers 1, 0, 0
+    ///
+    /// The paper's own check. What the vertices within eps span, as far as it hangs together with the vertex, is
+    /// contractible when the mesh is good and the ball small enough for the surface.
+    #[arg(long)]
+    local: bool,
+
+    /// Radius of the neighborhoods of --local, unit of the data [default: what the mesh was made with]
+    #[arg(long, visible_alias = "epsilon", value_name = "E", value_parser = positive, requires = "local")]
+    eps: Option<f64>,
+
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -69,7 +84,7 @@ impl Check {
         let file = read_mesh(&self.mesh)?;
         let mesh = &file.mesh;
         let points = match &self.points {
-            Some(path) => Some(read_points(path, &self.choice.options())?.into_f64()),
+            Some(path) => Some(self.choice.read(path)?.into_f64()),
             None => None,
         };
         if let (Some(points), Some(path)) = (&points, &self.points)
@@ -92,6 +107,10 @@ impl Check {
             ..CertificateOptions::default()
         };
         let homology = homology(&mesh.complex)?;
+        let local = match self.local {
+            true => Some(self.local_check(mesh, &file.extras.metadata)?),
+            false => None,
+        };
         let certificate = certify(mesh, &options);
         let pieces = pieces(mesh);
         drop(progress);
@@ -120,22 +139,102 @@ impl Check {
             let places = super::convert::places_for(path, &pieces.normalization, None)?;
             write_mesh(path, &pieces.normalization, &extras, places.as_ref())?;
         }
-        let verdict = certificate.verdict();
+        let sound = local.as_ref().is_none_or(|local| local.failures.is_empty());
+        let verified = certificate.verdict().is_verified() && sound;
         if self.json {
-            let mut all = findings.json(verdict.is_verified());
+            let mut all = findings.json(verified);
+            if let Some(local) = &local {
+                all.insert("local".into(), json!(local));
+            }
             all.insert("crosscap".into(), json!(env!("CARGO_PKG_VERSION")));
             all.insert("file".into(), json!(self.mesh.display().to_string()));
             say(pretty(&Value::Object(all)).trim_end())?;
         } else {
+            if let Some(local) = &local {
+                say(told(local, mesh))?;
+            }
             say(findings.lines())?;
         }
-        if verdict.is_verified() {
+        if verified {
             Ok(())
         } else {
             Err(Failure::NotVerified(format!(
-                "{}: not verified",
-                self.mesh.display()
+                "{}: not verified{}",
+                self.mesh.display(),
+                if sound {
+                    ""
+                } else {
+                    ": there are neighborhoods that are not contractible"
+                }
             )))
         }
     }
+
+    fn local_check(&self, mesh: &Mesh, metadata: &Value) -> Result<LocalHomology, Failure> {
+        let made_with = metadata.get("eps").and_then(Value::as_f64);
+        let Some(eps) = self.eps.or(made_with.filter(|&eps| eps > 0.0)) else {
+            return Err(Failure::usage(format!(
+                "{}: does not tell the eps it was made with: give --eps, the radius of the neighborhoods of --local",
+                self.mesh.display()
+            )));
+        };
+        let edges = mesh.complex.edges();
+        let length = |e: &[u32; 2]| {
+            let [a, b] = e.map(|v| v as usize);
+            mesh.vertices.squared_distance(a, b).sqrt()
+        };
+        let edge = median(edges.iter().map(length).collect());
+        if eps <= edge {
+            return Err(Failure::usage(format!(
+                "--eps {eps} is not above the median edge, {edge:.3}: most neighborhoods would be single vertices, and \
+                 the check would say nothing; 2 edges are a good start"
+            )));
+        }
+        let oracle = EuclideanOracle::new(mesh.vertices.clone())?;
+        Ok(local_homology(
+            &mesh.complex,
+            &oracle,
+            eps,
+            &Threads::new(0)?,
+        )?)
+    }
+}
+
+/// The local check in a line or two.
+fn told(local: &LocalHomology, mesh: &Mesh) -> String {
+    let all = format!(
+        "{} of radius {} (median {})",
+        counted(local.neighborhoods, "neighborhood"),
+        local.radius,
+        counted(local.median_members, "vertex")
+    );
+    let others = match local.other_sheets {
+        0 => String::new(),
+        n => format!(
+            "\n           {n} of the balls hold a part of another sheet, which does not meet theirs in them"
+        ),
+    };
+    let Some(first) = local.failures.first() else {
+        return format!("local      {all}: all have Betti numbers 1, 0, 0{others}");
+    };
+    let vertex = first.vertex as usize;
+    let row = match mesh.point_index[vertex] {
+        row if row >= 0 => format!(" (point {row})"),
+        _ => String::new(),
+    };
+    let place = mesh.vertices.point(vertex).iter().take(3);
+    let place: Vec<String> = place.map(|x| format!("{x:.4}")).collect();
+    let more = if mesh.vertices.dimension() > 3 {
+        ", .."
+    } else {
+        ""
+    };
+    format!(
+        "local      {all}: {} not 1, 0, 0 over Q and Z/2, first at vertex {vertex}{row} at ({}{more}): {} over Q, {} \
+         over Z/2. To change: a smaller --eps if the surface is no disc within it, else the mesh is wrong there{others}",
+        local.failures.len(),
+        place.join(", "),
+        betti(first.betti_rational),
+        betti(first.betti_mod2)
+    )
 }

@@ -12,7 +12,7 @@ use clap::Args;
 use crosscap::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap_algorithms::certificate::Verdict;
 use crosscap_backends::files::{
-    AnyCloud, MESH_EXTENSIONS, MeshExtras, read_indices, read_points, write_bytes_whole, write_mesh,
+    AnyCloud, MESH_EXTENSIONS, MeshExtras, read_indices, write_bytes_whole, write_mesh,
 };
 use crosscap_core::{Error, PointCloud, Scalar};
 use serde_json::{Value, json};
@@ -75,7 +75,7 @@ impl Reconstruct {
         // Refuse what can be refused before the work begins.
         self.parameters.parameters(Vec::new())?;
         self.check_outputs()?;
-        let cloud = read_points(&self.points, &self.choice.options())?;
+        let cloud = self.choice.read(&self.points)?;
         if cloud.len() < LEAST_POINTS {
             return Err(Failure::usage(format!(
                 "{}: found {}, expected at least {LEAST_POINTS}, what one neighborhood needs",

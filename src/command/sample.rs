@@ -6,7 +6,8 @@ use super::output;
 use super::terminal::{Progress, say};
 use clap::Args;
 use crosscap_algorithms::surfaces::{
-    PaperExample, Random, RingConformations, SampleSurface, SamplingLaw, catalogue, embed, thin,
+    PaperExample, Random, RingConformations, RingError, RingGeometry, SampleSurface, SamplingLaw,
+    catalogue, embed, thin,
 };
 use crosscap_backends::files::{write_indices, write_points};
 use crosscap_core::{Error, PointCloud};
@@ -21,7 +22,8 @@ Examples:
   crosscap sample two-spheres -n 200000 --thin 0.01 -o spheres.npy
   crosscap sample moebius -o strip.npy --boundary-out rim.npy
   crosscap sample torus -n 5000 --noise 0.01 --embed 10 -o torus.csv
-  crosscap sample cyclo-octane -n 100000 -o conformations.npy";
+  crosscap sample cyclo-octane -n 100000 -o conformations.npy
+  crosscap sample cyclo-octane --bond-length 1.54 --bond-angle 111.5 --thin 0.05 -o other.npy";
 
 /// Name of the conformations of cyclo-octane, which are no parametrized surface.
 const RING: &str = "cyclo-octane";
@@ -58,6 +60,14 @@ pub struct Sample {
     #[arg(long)]
     parameter_uniform: bool,
 
+    /// Length of the bonds of cyclo-octane, Angstrom [default: 1.52]
+    #[arg(long, value_name = "L", value_parser = positive)]
+    bond_length: Option<f64>,
+
+    /// Bond angle of cyclo-octane, degrees; the ring closes below 135 [default: 115]
+    #[arg(long, value_name = "DEGREES", value_parser = positive)]
+    bond_angle: Option<f64>,
+
     /// Standard deviation of normal noise added to every coordinate, unit of the surface
     #[arg(long, value_name = "SIGMA", value_parser = not_negative, default_value_t = 0.0)]
     noise: f64,
@@ -81,7 +91,7 @@ struct Drawn {
     boundary: Vec<usize>,
     name: &'static str,
     summary: &'static str,
-    betti: [usize; 3],
+    betti: Option<[usize; 3]>,
     paper: Option<PaperExample>,
 }
 
@@ -125,6 +135,12 @@ impl Sample {
                 list()
             ))
         })?;
+        if self.bond_length.is_some() || self.bond_angle.is_some() {
+            return Err(Failure::usage(format!(
+                "{} has no bonds: leave out --bond-length and --bond-angle",
+                surface.name()
+            )));
+        }
         if self.boundary_out.is_some() && !surface.has_boundary() {
             return Err(Failure::usage(format!(
                 "{} has no boundary: leave out --boundary-out",
@@ -157,7 +173,7 @@ impl Sample {
             boundary: sample.boundary,
             name: surface.name(),
             summary: surface.summary(),
-            betti: surface.truth().betti,
+            betti: Some(surface.truth().betti),
             // With another number of points the parameters would have to be others.
             paper: surface
                 .paper()
@@ -179,9 +195,16 @@ impl Sample {
         }
         let count = self.count.map_or(RING_COUNT, |count| count as usize);
         self.check_size(count, 24)?;
-        let mut points = RingConformations::cyclo_octane()
-            .sample(count, self.seed)?
-            .points;
+        let plain = self.bond_length.is_none() && self.bond_angle.is_none();
+        let known = RingGeometry::cyclo_octane();
+        let length = self.bond_length.unwrap_or(known.bond_lengths[0]);
+        let angle = match self.bond_angle {
+            Some(angle) => angle,
+            None => known.bond_angles[0].unwrap_or_default(),
+        };
+        let told = |error: RingError| Failure::usage(format!("{RING}: {error}"));
+        let ring = RingConformations::new(known.bond_lengths.len(), length, angle).map_err(told)?;
+        let mut points = ring.sample(count, self.seed).map_err(told)?.points;
         if let Some(spacing) = self.thin {
             points = points.select(&thin(&points, spacing)?);
         }
@@ -190,7 +213,8 @@ impl Sample {
             boundary: Vec::new(),
             name: RING,
             summary: "conformations of cyclo-octane, Angstrom",
-            betti: [1, 1, 2],
+            // Other lengths and angles are another surface.
+            betti: plain.then_some([1, 1, 2]),
             paper: None,
         })
     }
@@ -247,7 +271,9 @@ impl Sample {
                 counted(drawn.boundary.len(), "row")
             ));
         }
-        lines.push(format!("true Betti numbers {}", betti(drawn.betti)));
+        if let Some(known) = drawn.betti {
+            lines.push(format!("true Betti numbers {}", betti(known)));
+        }
         if let Some(paper) = &drawn.paper {
             let mut hint = format!(
                 "the paper's parameters for {}: --eps {} --dl {}",

@@ -220,8 +220,65 @@ fn any() -> impl Strategy<Value = Complex> {
     ]
 }
 
+/// Two or three surfaces of tens of vertices, some vertices of which are made one at random: edges with
+/// three, four and more triangles, pinched vertices, curves shared by several surfaces; with bare
+/// edges and isolated vertices on top.
+fn any_identified() -> impl Strategy<Value = Complex> {
+    let surface = (3usize..6, 3usize..6, 0..5u8).prop_map(|(m, n, kind)| match kind {
+        0 => glued_rectangle(m, n, false),
+        1 => glued_rectangle(m, n, true),
+        2 => strip(m as u32, true),
+        3 => presentation(1, &[vec![1; m - 1]]),
+        _ => discs_along_a_circle(n - 2),
+    });
+    let index = proptest::arbitrary::any::<prop::sample::Index>;
+    let pairs = prop::collection::vec((index(), index()), 0..14);
+    let bare = prop::collection::vec((index(), index()), 0..5);
+    let parts = prop::collection::vec(surface, 1..4);
+    (parts, pairs, bare, 0usize..3).prop_map(|(parts, pairs, bare, isolated)| {
+        let all = parts.iter().skip(1);
+        let all = all.fold(parts[0].clone(), |all, part| disjoint_union(&all, part));
+        let count = all.vertices;
+        let mut names: Vec<u32> = (0..count as u32).collect();
+        for (a, b) in pairs {
+            let (kept, lost) = (names[a.index(count)], names[b.index(count)]);
+            names
+                .iter_mut()
+                .filter(|n| **n == lost)
+                .for_each(|n| *n = kept);
+        }
+        let named = |t: &[u32; 3]| {
+            let mut t = t.map(|v| names[v as usize]);
+            t.sort_unstable();
+            t
+        };
+        let mut triangles: Vec<[u32; 3]> = all.triangles.iter().map(named).collect();
+        triangles.retain(|t| t[0] < t[1] && t[1] < t[2]);
+        triangles.sort_unstable();
+        triangles.dedup();
+        let ends = bare
+            .iter()
+            .map(|(a, b)| [a.index(count) as u32, b.index(count) as u32]);
+        let mut curve: Vec<_> = ends
+            .filter(|[a, b]| a != b)
+            .map(|[a, b]| crosscap_core::CurveEdge::new(a, b, 0))
+            .collect();
+        curve.sort_unstable();
+        curve.dedup();
+        Complex::new(count + isolated, triangles, curve).unwrap()
+    })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn identified_surfaces_agree_with_plain_elimination(complex in any_identified()) {
+        checked(&complex);
+        let found = homology(&complex).unwrap().torsion;
+        let found: Vec<i128> = found.iter().map(|x| x.to_i128().unwrap()).collect();
+        prop_assert_eq!(found, naive_torsion(&complex));
+    }
 
     #[test]
     fn euler_poincare_and_universal_coefficients(complex in any()) {

@@ -4,8 +4,8 @@ use super::gluing::{FREE, Gluing};
 use super::normalization::Normalization;
 use super::straightness::{self, Rims, dot, unit};
 use super::{
-    CrossingAngle, CurveEnd, DoubleCurve, Junction, MultiplePoint, PointContact, Preimage,
-    Sidedness,
+    BareCurve, CrossingAngle, CurveEnd, CurveMeeting, DoubleCurve, Junction, MultiplePoint,
+    PointContact, Preimage, Sidedness,
 };
 use crate::homology::signed_union::{Joined, SignedUnion};
 use crosscap_core::{Mesh, squared_distance};
@@ -65,6 +65,44 @@ fn vertices_and_length(gluing: &Gluing<'_>, edges: &[u32], trail: &Trail) -> (Ve
 fn edge_length(mesh: &Mesh, [a, b]: [u32; 2]) -> f64 {
     let point = |v: u32| mesh.vertices.point(v as usize);
     squared_distance(point(a), point(b)).sqrt()
+}
+
+/// Angles along a curve, weighted by length.
+struct AngleSum {
+    sum: f64,
+    total: f64,
+    least: f64,
+    most: f64,
+}
+
+impl Default for AngleSum {
+    fn default() -> Self {
+        Self {
+            sum: 0.0,
+            total: 0.0,
+            least: f64::INFINITY,
+            most: f64::NEG_INFINITY,
+        }
+    }
+}
+
+impl AngleSum {
+    fn add(&mut self, length: f64, cosine: f64) {
+        let degrees = cosine.clamp(-1.0, 1.0).acos().to_degrees();
+        self.sum += length * degrees;
+        self.total += length;
+        self.least = self.least.min(degrees);
+        self.most = self.most.max(degrees);
+    }
+
+    fn result(&self) -> Option<CrossingAngle> {
+        (self.total > 0.0).then(|| CrossingAngle {
+            // Rounding must not carry it past equal angles.
+            mean: (self.sum / self.total).clamp(self.least, self.most),
+            min: self.least,
+            max: self.most,
+        })
+    }
 }
 
 /// One of the two edges of the normalization over a double edge: two glued sides, the smaller
@@ -268,8 +306,7 @@ impl<'a> Crossings<'a> {
 
     /// Angle between the two sheets, each taken as the line through its two half planes.
     fn angle(&self, trail: &Trail) -> Option<CrossingAngle> {
-        let (mut sum, mut total) = (0.0, 0.0);
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut angles = AngleSum::default();
         for &(d, _) in &trail.steps {
             let [[a, b], [p, q]] = self.lifts[d as usize];
             let ends = self.gluing.sides.edges[self.edges[d as usize] as usize];
@@ -285,18 +322,9 @@ impl<'a> Crossings<'a> {
             let (Some((u, _)), Some((w, _))) = (line(0, 1), line(2, 3)) else {
                 continue;
             };
-            let degrees = dot(&u, &w).abs().min(1.0).acos().to_degrees();
-            sum += length * degrees;
-            total += length;
-            least = least.min(degrees);
-            most = most.max(degrees);
+            angles.add(length, dot(&u, &w).abs());
         }
-        (total > 0.0).then(|| CrossingAngle {
-            // Rounding must not carry it past equal angles.
-            mean: (sum / total).clamp(least, most),
-            min: least,
-            max: most,
-        })
+        angles.result()
     }
 
     /// Vertices where three or more sheets cross along double curves.
@@ -359,9 +387,95 @@ pub(super) fn junctions(gluing: &Gluing<'_>, normal: &Normalization) -> Vec<Junc
             length,
             vertices,
             pieces,
+            angle: junction_angle(gluing, &edges, trail),
         }
     };
     trails.iter().map(describe).collect()
+}
+
+/// Angles between each two of three cells.
+fn junction_angle(gluing: &Gluing<'_>, edges: &[u32], trail: &Trail) -> Option<CrossingAngle> {
+    let mut angles = AngleSum::default();
+    for &(d, _) in &trail.steps {
+        let e = edges[d as usize] as usize;
+        let at = gluing.sides.at(e);
+        if at.len() != 3 {
+            return None;
+        }
+        let ends = gluing.sides.edges[e];
+        let Some((length, directions)) = straightness::leaving(gluing.mesh, ends, at) else {
+            continue;
+        };
+        for [i, j] in [[0, 1], [1, 2], [0, 2]] {
+            angles.add(length, dot(&directions[i], &directions[j]));
+        }
+    }
+    angles.result()
+}
+
+/// Curves of edges without a triangle.
+pub(super) fn bare_curves(gluing: &Gluing<'_>, normal: &Normalization) -> Vec<BareCurve> {
+    // At a bare vertex of the normalization nothing but bare edges meets.
+    let mut ends: Vec<(u32, usize, usize)> = Vec::new();
+    for (d, bare) in normal.bare.iter().enumerate() {
+        ends.extend([(bare[0], d, 0), (bare[1], d, 1)]);
+    }
+    ends.sort_unstable();
+    let mut links: Links = vec![[None; 2]; normal.bare.len()];
+    for same in ends.chunk_by(|x, y| x.0 == y.0) {
+        if let &[(_, d, end), (_, other, other_end)] = same {
+            links[d][end] = Some((other as u32, other_end));
+            links[other][other_end] = Some((d as u32, end));
+        }
+    }
+    let mut sheets: Vec<(u32, u32)> = normal
+        .sheet
+        .iter()
+        .enumerate()
+        .map(|(c, &sheet)| {
+            let vertex = normal.original_vertex[sheet as usize];
+            (vertex, normal.triangle_piece[c / 3])
+        })
+        .collect();
+    sheets.sort_unstable();
+    sheets.dedup();
+    let pieces_at = |v: u32| -> Vec<u32> {
+        let from = sheets.partition_point(|s| s.0 < v);
+        let at = sheets[from..].iter().take_while(|s| s.0 == v);
+        at.map(|s| s.1).collect()
+    };
+    let original = |v: u32| normal.original_vertex[v as usize];
+    let describe = |trail: &Trail| {
+        let edges = trail
+            .steps
+            .iter()
+            .map(|&(d, end)| (normal.bare[d as usize], end));
+        let mut vertices: Vec<u32> = edges
+            .clone()
+            .map(|(ends, end)| original(ends[end]))
+            .collect();
+        if let Some((ends, end)) = edges.clone().next_back().filter(|_| !trail.circle) {
+            vertices.push(original(ends[1 - end]));
+        }
+        let last = vertices.len() - 1;
+        let meetings = vertices.iter().enumerate().filter_map(|(k, &vertex)| {
+            let pieces = pieces_at(vertex);
+            (!pieces.is_empty()).then(|| CurveMeeting {
+                vertex,
+                pieces,
+                end: !trail.circle && (k == 0 || k == last),
+            })
+        });
+        BareCurve {
+            circle: trail.circle,
+            length: edges
+                .map(|(ends, _)| edge_length(gluing.mesh, ends.map(original)))
+                .sum(),
+            meetings: meetings.collect(),
+            vertices,
+        }
+    };
+    trails(&links).iter().map(describe).collect()
 }
 
 /// Vertices where several sheets touch and no curve runs in which they meet.

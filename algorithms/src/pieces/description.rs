@@ -1,6 +1,6 @@
 //! The pieces of a mesh in a paragraph of English.
 
-use super::{DoubleCurve, Pieces, Sidedness};
+use super::{CrossingAngle, DoubleCurve, Pieces, Sidedness};
 use std::fmt;
 
 impl fmt::Display for Pieces {
@@ -8,13 +8,14 @@ impl fmt::Display for Pieces {
         let mut sentences = vec![self.inventory()];
         sentences.extend(self.meetings());
         sentences.extend(self.cuts());
+        sentences.extend(self.touches());
+        sentences.extend(self.lines());
         let triple = self
             .multiple_points
             .iter()
             .filter(|p| p.sheets == 3)
             .count();
         let higher = self.multiple_points.len() - triple;
-        let bare = self.bare_edges;
         for (number, one, many) in [
             (triple, "triple point", "triple points"),
             (
@@ -22,12 +23,6 @@ impl fmt::Display for Pieces {
                 "point of more than three sheets",
                 "points of more than three sheets",
             ),
-            (
-                self.contacts.len(),
-                "point in which sheets touch",
-                "points in which sheets touch",
-            ),
-            (bare, "edge without a triangle", "edges without a triangle"),
             (
                 self.isolated_vertices,
                 "isolated vertex",
@@ -72,6 +67,21 @@ fn listed(items: &[String]) -> String {
         [] => String::new(),
         [one] => one.clone(),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+/// Angles in brackets, whole degrees; nothing for none.
+fn angles(what: &str, all: impl Iterator<Item = CrossingAngle> + Clone) -> String {
+    let least = all.clone().map(|a| a.min).fold(f64::INFINITY, f64::min);
+    let most = all.map(|a| a.max).fold(f64::NEG_INFINITY, f64::max);
+    if least > most {
+        return String::new();
+    }
+    let (least, most) = (format!("{least:.0}"), format!("{most:.0}"));
+    if least == most {
+        format!(" ({what} {least} degrees)")
+    } else {
+        format!(" ({what} {least} to {most} degrees)")
     }
 }
 
@@ -176,27 +186,72 @@ impl Pieces {
             }
             _ => {}
         }
-        let angles = || curves.iter().filter_map(|c| c.angle);
-        let least = angles().map(|a| a.min).fold(f64::INFINITY, f64::min);
-        let most = angles().map(|a| a.max).fold(f64::NEG_INFINITY, f64::max);
-        if least <= most {
-            let (least, most) = (format!("{least:.0}"), format!("{most:.0}"));
-            text += &if least == most {
-                format!(" (crossing angle {least} degrees)")
-            } else {
-                format!(" (crossing angle {least} to {most} degrees)")
-            };
-        }
+        text += &angles("crossing angle", curves.iter().filter_map(|c| c.angle));
         text
+    }
+
+    /// Points in which sheets meet.
+    fn touches(&self) -> Vec<String> {
+        let groups = grouped(self.contacts.iter().map(|c| (&c.pieces, ())));
+        let say = |(pieces, all): &(&Vec<u32>, Vec<()>)| {
+            let mut once = (*pieces).clone();
+            once.dedup();
+            let labels: Vec<String> = once.iter().map(|&p| self.label(p)).collect();
+            let (verb, itself) = match labels.len() {
+                1 => ("meets", " itself"),
+                _ => ("meet", ""),
+            };
+            let points = counted(all.len(), "point", "points");
+            format!("{} {verb}{itself} in {points} alone", listed(&labels))
+        };
+        groups.iter().map(say).collect()
+    }
+
+    /// Curves without a surface.
+    fn lines(&self) -> Vec<String> {
+        let kinds = grouped(self.bare_curves.iter().map(|c| {
+            let meetings = grouped(c.meetings.iter().map(|m| ((&m.pieces, m.end), ())));
+            let counts: Vec<_> = meetings
+                .iter()
+                .map(|(key, all)| (*key, all.len()))
+                .collect();
+            ((c.circle, counts), ())
+        }));
+        let say =
+            |((circle, meetings), all): &((bool, Vec<((&Vec<u32>, bool), usize)>), Vec<()>)| {
+                let many = all.len() > 1;
+                let what = match circle {
+                    true => counted(all.len(), "bare circle", "bare circles"),
+                    false => counted(all.len(), "bare arc", "bare arcs"),
+                };
+                if meetings.is_empty() {
+                    return format!("{what} {} apart", if many { "lie" } else { "lies" });
+                }
+                let each = meetings.iter().map(|((pieces, end), count)| {
+                    let labels: Vec<String> = pieces.iter().map(|&p| self.label(p)).collect();
+                    let verb = match (end, many) {
+                        (true, false) => "ends on",
+                        (true, true) => "end on",
+                        (false, false) => "goes through",
+                        (false, true) => "go through",
+                    };
+                    let points = counted(*count, "point", "points");
+                    let each = if many { " each" } else { "" };
+                    format!("{verb} {} in {points}{each}", listed(&labels))
+                });
+                format!("{what} {}", listed(&each.collect::<Vec<_>>()))
+            };
+        kinds.iter().map(say).collect()
     }
 
     fn cuts(&self) -> Vec<String> {
         let kinds = grouped(
             self.junctions
                 .iter()
-                .map(|j| ((j.circle, j.cells, &j.pieces), ())),
+                .map(|j| ((j.circle, j.cells, &j.pieces), j.angle)),
         );
-        let describe = |((circle, cells, pieces), all): &((bool, u32, &Vec<u32>), Vec<()>)| {
+        type Kind<'a> = ((bool, u32, &'a Vec<u32>), Vec<Option<CrossingAngle>>);
+        let describe = |((circle, cells, pieces), all): &Kind<'_>| {
             let labels: Vec<String> = pieces.iter().map(|&p| self.label(p)).collect();
             let what = match circle {
                 true => counted(all.len(), "circle", "circles"),
@@ -204,7 +259,11 @@ impl Pieces {
             };
             let verb = if labels.len() == 1 { "ends" } else { "end" };
             let cells = number(*cells as usize);
-            format!("{} {verb} in {what} of {cells} cells", listed(&labels))
+            let angles = angles("angles", all.iter().flatten().copied());
+            format!(
+                "{} {verb} in {what} of {cells} cells{angles}",
+                listed(&labels)
+            )
         };
         kinds.iter().map(describe).collect()
     }

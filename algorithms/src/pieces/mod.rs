@@ -89,7 +89,7 @@ pub enum CurveEnd {
     Singular,
 }
 
-/// Angle at which two sheets cross, in degrees, 0 to 90.
+/// Angle at which sheets meet, in degrees: 0 to 90 where two of them cross, 0 to 180 where they end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CrossingAngle {
     /// Mean over the length of the curve.
@@ -143,6 +143,32 @@ pub struct Junction {
     pub vertices: Vec<u32>,
     /// The pieces that end there, increasing, each once.
     pub pieces: Vec<u32>,
+    /// Angles between each two of its three cells; `None` for more cells, and beside triangles without area.
+    pub angle: Option<CrossingAngle>,
+}
+
+/// A curve of edges without a triangle: no surface is beside it, except in points.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BareCurve {
+    /// Closed, or an arc. Where three or more such curves meet each of them ends.
+    pub circle: bool,
+    /// Length, in the unit of the data.
+    pub length: f64,
+    /// Vertices of the mesh along it; the first one is not repeated at the end of a circle.
+    pub vertices: Vec<u32>,
+    /// Where it meets the surface, in the order of its vertices.
+    pub meetings: Vec<CurveMeeting>,
+}
+
+/// A point in which a curve without a surface meets the surface.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CurveMeeting {
+    /// Vertex of the mesh.
+    pub vertex: u32,
+    /// The pieces of the sheets there, increasing, each once.
+    pub pieces: Vec<u32>,
+    /// Whether the curve ends there, rather than going through.
+    pub end: bool,
 }
 
 /// A point where three or more sheets cross along double curves.
@@ -177,7 +203,9 @@ pub struct Pieces {
     pub multiple_points: Vec<MultiplePoint>,
     /// Points in which sheets touch, by vertex.
     pub contacts: Vec<PointContact>,
-    /// Curve edges that no surface touches.
+    /// Curves of edges without a triangle.
+    pub bare_curves: Vec<BareCurve>,
+    /// Number of edges without a triangle.
     pub bare_edges: usize,
     /// Vertices that neither a triangle nor a curve edge touches.
     pub isolated_vertices: usize,
@@ -238,6 +266,7 @@ pub fn pieces(mesh: &Mesh) -> Result<Pieces, PiecesError> {
     let (curves, multiple_points) = curves::double_curves(&gluing, &normal);
     let junctions = curves::junctions(&gluing, &normal);
     let contacts = curves::point_contacts(&gluing, &normal);
+    let bare_curves = curves::bare_curves(&gluing, &normal);
     let (normalization, original_triangle) = normal.mesh(&gluing)?;
     let mut touched = vec![false; normalization.complex.vertices];
     let corners = normalization.complex.triangles.iter().flatten();
@@ -255,6 +284,7 @@ pub fn pieces(mesh: &Mesh) -> Result<Pieces, PiecesError> {
         junctions,
         multiple_points,
         contacts,
+        bare_curves,
         bare_edges: normal.bare.len(),
         isolated_vertices: touched.iter().filter(|&&t| !t).count(),
         normalization,

@@ -24,6 +24,15 @@ pub(super) struct Rims {
 
 /// `None` when the edge has no length or a triangle no area.
 pub(super) fn directions(mesh: &Mesh, ends: [u32; 2], sides: [u32; 4]) -> Option<Rims> {
+    let (length, directions) = leaving(mesh, ends, &sides)?;
+    Some(Rims {
+        length,
+        directions: directions.try_into().ok()?,
+    })
+}
+
+/// The length of an edge, and the directions in which the triangles of any number of sides leave it.
+pub(super) fn leaving(mesh: &Mesh, ends: [u32; 2], sides: &[u32]) -> Option<(f64, Vec<Vec<f64>>)> {
     let place = |v: u32| mesh.vertices.point(v as usize);
     let from = place(ends[0]);
     let along: Vec<f64> = from
@@ -32,7 +41,7 @@ pub(super) fn directions(mesh: &Mesh, ends: [u32; 2], sides: [u32; 4]) -> Option
         .map(|(a, b)| b - a)
         .collect();
     let (along, length) = unit(along)?;
-    let leave = |side: u32| {
+    let leave = |&side: &u32| {
         let apex = mesh.complex.triangles[side as usize / 3][side as usize % 3];
         let mut away: Vec<f64> = from.iter().zip(place(apex)).map(|(a, c)| c - a).collect();
         let scale = norm(&away);
@@ -44,11 +53,8 @@ pub(super) fn directions(mesh: &Mesh, ends: [u32; 2], sides: [u32; 4]) -> Option
         let (away, height) = unit(away)?;
         (height > 1e-12 * scale.max(length)).then_some(away)
     };
-    let [a, b, c, d] = sides;
-    Some(Rims {
-        length,
-        directions: [leave(a)?, leave(b)?, leave(c)?, leave(d)?],
-    })
+    let directions: Option<Vec<Vec<f64>>> = sides.iter().map(leave).collect();
+    Some((length, directions?))
 }
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 /// A mesh from patches: vertices that agree in all coordinates (to 1e-6) are one.
+#[derive(Clone)]
 struct Weld {
     dimension: usize,
     names: BTreeMap<Vec<i64>, u32>,
@@ -482,8 +483,126 @@ fn discs_at_a_junction() {
         panic!("{found}")
     };
     assert!(junction.circle && junction.cells == 3 && junction.pieces == [0, 1, 2]);
-    let text = "Three discs. Disc 1, disc 2 and disc 3 end in one circle of three cells.";
-    assert_eq!(found.to_string(), text);
+    let text = found.to_string();
+    let start = "Three discs. Disc 1, disc 2 and disc 3 end in one circle of three cells (angles";
+    assert!(text.starts_with(start), "{text}");
+}
+
+/// A cap of a sphere around the x axis, from the circle (0, r cos t, r sin t) to the pole.
+fn cap(weld: &mut Weld, center: f64, radius: f64, n: usize) {
+    let (rim, sign) = ((radius * radius - center * center).sqrt(), center.signum());
+    let widest = f64::atan2(rim, -center * sign);
+    weld.patch(n, 4 * n, |i, j| {
+        let polar = widest * (1.0 - i as f64 / n as f64);
+        let around = TAU * (j % (4 * n)) as f64 / (4 * n) as f64;
+        let x = center + sign * radius * polar.cos();
+        let r = radius * polar.sin();
+        vec![x, r * around.cos(), r * around.sin()]
+    });
+}
+
+#[test]
+fn standard_double_bubble_meets_at_120_degrees() {
+    // Two caps of unit spheres and a flat disc between them.
+    let n = 16;
+    let mut weld = Weld::new(3);
+    cap(&mut weld, 0.5, 1.0, n);
+    cap(&mut weld, -0.5, 1.0, n);
+    let rim = 0.75f64.sqrt();
+    weld.patch(n, 4 * n, |i, j| {
+        let r = rim * (1.0 - i as f64 / n as f64);
+        let around = TAU * (j % (4 * n)) as f64 / (4 * n) as f64;
+        vec![0.0, r * around.cos(), r * around.sin()]
+    });
+    let mesh = weld.mesh();
+    assert_eq!(betti(&mesh), [1, 0, 2]);
+    let found = checked(&mesh);
+    assert_eq!(names(&found), ["disc"; 3]);
+    let angle = found.junctions[0].angle.unwrap();
+    assert!((angle.mean - 120.0).abs() < 0.1, "{angle:?}");
+    // The chord of a cap leaves the rim at half of its step of 7.5 degrees from the tangent.
+    assert!(angle.min > 112.5 && angle.max < 127.6, "{angle:?}");
+}
+
+#[test]
+fn a_line_through_a_disc_and_one_that_ends_on_it() {
+    let mut weld = Weld::new(3);
+    weld.patch(4, 16, |i, j| {
+        let (r, t) = (1.0 - i as f64 / 4.0, TAU * (j % 16) as f64 / 16.0);
+        vec![r * t.cos(), r * t.sin(), 0.0]
+    });
+    let middle = weld.vertex(&[0.0, 0.0, 0.0]);
+    let line: Vec<u32> = [-1.0, -0.5, 0.0, 0.5, 1.0]
+        .map(|z| weld.vertex(&[0.0, 0.0, z]))
+        .into();
+    assert_eq!(line[2], middle);
+    let mut more = weld.clone();
+    let other: Vec<u32> = [0.0, 0.4, 0.8].map(|z| more.vertex(&[0.5, 0.0, z])).into();
+    let apart: Vec<u32> = [[3., 0., 0.], [4., 0., 0.], [3., 1., 0.]]
+        .map(|p| more.vertex(&p))
+        .into();
+    let edge = |a: u32, b: u32| crosscap_core::CurveEdge::new(a, b, 0);
+    let mut mesh = weld.mesh();
+    mesh.complex.curve_edges = line.windows(2).map(|w| edge(w[0], w[1])).collect();
+    mesh.complex.curve_edges.sort_unstable();
+    let found = pieces(&mesh).unwrap();
+    assert_eq!(
+        found.to_string(),
+        "One disc. One bare arc goes through the disc in one point."
+    );
+    let [curve] = &found.bare_curves[..] else {
+        panic!("{found}")
+    };
+    assert!(!curve.circle && (curve.length - 2.0).abs() < 1e-12);
+    let expected = CurveMeeting {
+        vertex: middle,
+        pieces: vec![0],
+        end: false,
+    };
+    assert_eq!(curve.meetings, [expected]);
+
+    let mut mesh = more.mesh();
+    mesh.complex.curve_edges = line.windows(2).map(|w| edge(w[0], w[1])).collect();
+    mesh.complex
+        .curve_edges
+        .extend(other.windows(2).map(|w| edge(w[0], w[1])));
+    mesh.complex
+        .curve_edges
+        .extend([[0, 1], [1, 2], [0, 2]].map(|[i, j]| edge(apart[i], apart[j])));
+    mesh.complex.curve_edges.sort_unstable();
+    let found = pieces(&mesh).unwrap();
+    let text = found.to_string();
+    for part in [
+        "One bare arc goes through the disc in one point.",
+        "One bare arc ends on the disc in one point.",
+        "One bare circle lies apart.",
+    ] {
+        assert!(text.contains(part), "{text}");
+    }
+    let lengths: f64 = found.bare_curves.iter().map(|c| c.length).sum();
+    assert!((lengths - (2.0 + 0.8 + 2.0 + 2f64.sqrt())).abs() < 1e-12);
+    assert_eq!(found.bare_edges, 4 + 2 + 3);
+    // The disc is a disc still, and the curves are apart from it in the normalization.
+    let h = homology(&found.normalization.complex).unwrap();
+    assert_eq!(h.betti_rational, [4, 1, 0]);
+}
+
+#[test]
+fn planes_that_cross_in_one_point_of_four_dimensions() {
+    let mut weld = Weld::new(4);
+    for at in [0, 2] {
+        weld.patch(6, 6, |i, j| {
+            let mut place = vec![0.0; 4];
+            (place[at], place[at + 1]) = (i as f64 - 3.0, j as f64 - 3.0);
+            place
+        });
+    }
+    let found = checked(&weld.mesh());
+    assert_eq!(
+        found.to_string(),
+        "Two discs. Disc 1 and disc 2 meet in one point alone."
+    );
+    assert_eq!(found.normalization.complex.vertices, 2 * 49);
 }
 
 fn small(dimension: usize, places: Vec<f64>, triangles: Vec<[u32; 3]>) -> Mesh {
@@ -514,7 +633,7 @@ fn spheres_touching_in_a_point() {
     );
     assert_eq!(
         found.to_string(),
-        "Two spheres. There is one point in which sheets touch."
+        "Two spheres. Sphere 1 and sphere 2 meet in one point alone."
     );
     // A bare edge between them is kept apart from the surface.
     mesh.complex.curve_edges = vec![crosscap_core::CurveEdge::new(1, 4, 0)];

@@ -45,7 +45,7 @@ pub use motion::{RigidMotion, embed, scaled};
 pub use piece::{Drawn, Piece, RimSegment, SamplingLaw, place_at};
 pub use projective::{BoySurface, ProjectivePlane, RomanSurface};
 pub use random::Random;
-pub use ring::{RingConformations, RingSample};
+pub use ring::{RingConformations, RingError, RingGeometry, RingProjection, RingSample};
 pub use round::{Cylinder, Ring, SphereCap, Torus};
 pub use sample::{Sample, Sampling};
 pub use strips::{KleinFigureEight, MoebiusStrip};

@@ -3,6 +3,7 @@
 //! | what | read | write |
 //! | --- | --- | --- |
 //! | points | [`read_points`] | [`write_points`] |
+//! | frames of a molecule | [`read_molecule`] | |
 //! | indices of points | [`read_indices`] | [`write_indices`] |
 //! | meshes | [`read_mesh`] | [`write_mesh`] |
 //! | distances | [`read_distances`] | |
@@ -41,5 +42,6 @@ pub use distances::{Distances, read_distances};
 pub use error::{FileError, Place};
 pub use indices::{read_indices, write_indices};
 pub use mesh::{MESH_EXTENSIONS, MeshExtras, MeshFile, read_mesh, write_mesh};
+pub use molecule::{Atom, Molecule, read_molecule};
 pub use points::{POINT_EXTENSIONS, PointOptions, read_points, write_points};
 pub use whole::write_bytes_whole;

@@ -2,13 +2,195 @@
 //!
 //! Every frame is one point: the coordinates of its atoms one after the other, three an atom.
 
-use super::error::{Flaw, Parsed, excerpt};
+use super::error::{FileError, Flaw, Parsed, excerpt};
+use super::points::{PointOptions, read_points};
 use super::table::{Table, number, text};
+use super::whole::{extension, read_bytes};
+use crosscap_core::PointCloud;
+use mendeleev::Element;
+use std::path::Path;
+
+/// An atom of a molecule as its file calls it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Atom {
+    /// The label of `.xyz` (mostly the element), the atom name of `.pdb` (`CA`, `HB2`); empty when the
+    /// coordinates came from a table.
+    pub name: String,
+    /// Symbol of the chemical element, empty when it cannot be told.
+    pub element: String,
+}
+
+impl Atom {
+    /// Standard atomic weight of the element (the conventional value of the IUPAC commission, daltons), by the crate
+    /// `mendeleev`; `None` when the element is not known.
+    pub fn mass(&self) -> Option<f64> {
+        Element::iter()
+            .find(|e| e.symbol() == self.element)
+            .map(|e| f64::from(e.atomic_weight()))
+    }
+}
+
+/// Frames with the same atoms in the same order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Molecule {
+    /// The atoms.
+    pub atoms: Vec<Atom>,
+    /// The frames, 3 coordinates an atom: x, y, z of the first, of the second, ..; the unit of the file (Angstrom).
+    pub frames: PointCloud<f64>,
+}
+
+impl Molecule {
+    /// Some atoms of every frame, in the given order.
+    ///
+    /// # Panics
+    /// When there is no such atom.
+    pub fn select(&self, atoms: &[usize]) -> Self {
+        let rows = self.frames.iter();
+        let some = rows.flat_map(|p| {
+            atoms
+                .iter()
+                .flat_map(|&a| [p[3 * a], p[3 * a + 1], p[3 * a + 2]])
+        });
+        Self {
+            atoms: atoms.iter().map(|&a| self.atoms[a].clone()).collect(),
+            frames: PointCloud::new(3 * atoms.len().max(1), some.collect())
+                .expect("whole rows of finite numbers"),
+        }
+    }
+
+    /// Numbers (from 0, increasing, each once) of the atoms that a text names: items between commas, each of them
+    ///
+    /// | item | atoms |
+    /// | --- | --- |
+    /// | `5`, `1-8` | by their place in the file, counted from 1 |
+    /// | `CA` | by name, as the file has it |
+    /// | `element:C` | by element |
+    /// | `heavy` | all but hydrogen |
+    /// | `all` | all |
+    ///
+    /// # Errors
+    /// A sentence that names the item which is no such thing, or which no atom is.
+    ///
+    /// ```
+    /// use crosscap_backends::files::{Atom, Molecule};
+    /// use crosscap_core::PointCloud;
+    /// let atom = |name: &str, element: &str| Atom { name: name.into(), element: element.into() };
+    /// let molecule = Molecule {
+    ///     atoms: vec![atom("CA", "C"), atom("HA", "H"), atom("N", "N")],
+    ///     frames: PointCloud::new(9, vec![0.0; 9]).unwrap(),
+    /// };
+    /// assert_eq!(molecule.chosen("heavy").unwrap(), [0, 2]);
+    /// assert_eq!(molecule.chosen("2-3,CA").unwrap(), [0, 1, 2]);
+    /// assert_eq!(molecule.chosen("element:H").unwrap(), [1]);
+    /// assert!(molecule.chosen("4").unwrap_err().contains("expected 1 to 3"));
+    /// ```
+    pub fn chosen(&self, text: &str) -> Result<Vec<usize>, String> {
+        let count = self.atoms.len();
+        let mut chosen = vec![false; count];
+        for item in text.split(',').map(str::trim) {
+            let range = match item.split_once('-') {
+                Some((from, to)) => from.trim().parse().ok().zip(to.trim().parse().ok()),
+                None => item.parse().ok().map(|one: usize| (one, one)),
+            };
+            if let Some((from, to)) = range {
+                if from < 1 || to > count || from > to {
+                    return Err(format!(
+                        "found atoms {item:?}, expected 1 to {count}, the smaller number first"
+                    ));
+                }
+                chosen[from - 1..to].fill(true);
+                continue;
+            }
+            let hydrogen = |a: &Atom| matches!(a.element.as_str(), "H" | "D");
+            let is_meant = |a: &Atom| match item.split_once(':') {
+                Some(("element", symbol)) => a.element.eq_ignore_ascii_case(symbol.trim()),
+                _ => a.name == item || item == "all" || (item == "heavy" && !hydrogen(a)),
+            };
+            let mut any = false;
+            for (a, chosen) in self.atoms.iter().zip(&mut chosen) {
+                let meant = !item.is_empty() && is_meant(a);
+                *chosen |= meant;
+                any |= meant;
+            }
+            if !any {
+                let mut names: Vec<&str> = self.atoms.iter().map(|a| a.name.as_str()).collect();
+                names.sort_unstable();
+                names.dedup();
+                names.truncate(12);
+                return Err(format!(
+                    "found {item:?}, which no atom is called; expected numbers (1-{count}), names ({}), \
+                     element:SYMBOL, heavy or all",
+                    names.join(", ")
+                ));
+            }
+        }
+        Ok((0..count).filter(|&a| chosen[a]).collect())
+    }
+}
+
+/// Reads the frames of a molecule with its atoms: chemical `.xyz`, `.pdb`; or, from any other format of points, rows
+/// of three coordinates an atom, the atoms then without a name.
+///
+/// # Errors
+/// Those of [`read_points`]; [`FileError::Content`] when the rows of a table are not of three coordinates an atom.
+///
+/// ```
+/// use crosscap_backends::files::{PointOptions, read_molecule};
+/// let folder = tempfile::tempdir().unwrap();
+/// let path = folder.path().join("water.xyz");
+/// std::fs::write(&path, "3\nwater\nO 0 0 0.12\nH 0 0.76 -0.47\nH 0 -0.76 -0.47\n").unwrap();
+/// let water = read_molecule(&path, &PointOptions::default()).unwrap();
+/// assert_eq!((water.frames.len(), water.frames.dimension()), (1, 9));
+/// assert_eq!(water.atoms[0].mass(), Some(15.999));
+/// ```
+pub fn read_molecule(
+    path: impl AsRef<Path>,
+    options: &PointOptions,
+) -> Result<Molecule, FileError> {
+    let path = path.as_ref();
+    let extension = extension(path);
+    let frames = match extension.as_str() {
+        "pdb" => Some(frames_of_pdb(&read_bytes(path)?)),
+        "xyz" => {
+            let bytes = read_bytes(path)?;
+            is_chemical(&bytes).then(|| frames_of_xyz(&bytes))
+        }
+        _ => None,
+    };
+    let Some(frames) = frames else {
+        let frames = read_points(path, options)?.into_f64();
+        if !frames.dimension().is_multiple_of(3) {
+            let flaw = Flaw::new(
+                format!("points of R^{}", frames.dimension()),
+                "three coordinates an atom",
+            );
+            return Err(flaw.of(path));
+        }
+        let atoms = vec![Atom::default(); frames.dimension() / 3];
+        return Ok(Molecule { atoms, frames });
+    };
+    let molecule = || {
+        let frames = frames?;
+        if options.transpose || options.array.is_some() {
+            return Err(Flaw::new(
+                "the option to transpose or to take an array",
+                "none, as frames of a molecule are points",
+            ));
+        }
+        let atoms = frames.atoms_of_all.clone();
+        let Table { columns, numbers } = frames.into_table()?;
+        Ok(Molecule {
+            atoms,
+            frames: super::any_cloud::points(columns, numbers)?,
+        })
+    };
+    molecule().map_err(|flaw| flaw.of(path))
+}
 
 /// Frames with the same atoms in the same order.
 #[derive(Default)]
 struct Frames {
-    elements: Vec<String>,
+    atoms_of_all: Vec<Atom>,
     numbers: Vec<f64>,
     frames: usize,
     /// Atoms seen in the current frame.
@@ -16,20 +198,29 @@ struct Frames {
 }
 
 impl Frames {
-    fn atom(&mut self, line: usize, element: &str, place: [f64; 3]) -> Parsed<()> {
+    fn atom(
+        &mut self,
+        line: usize,
+        name: &str,
+        element: impl FnOnce() -> String,
+        place: [f64; 3],
+    ) -> Parsed<()> {
         if self.frames == 0 {
-            self.elements.push(element.into());
-        } else if self.elements.get(self.atoms).map(String::as_str) != Some(element) {
-            let expected = match self.elements.get(self.atoms) {
-                Some(known) => format!("{known} as in the first frame"),
+            self.atoms_of_all.push(Atom {
+                name: name.into(),
+                element: element(),
+            });
+        } else if self.atoms_of_all.get(self.atoms).map(|a| a.name.as_str()) != Some(name) {
+            let expected = match self.atoms_of_all.get(self.atoms) {
+                Some(known) => format!("{} as in the first frame", known.name),
                 None => format!(
                     "the end of the frame after {} atoms as in the first",
-                    self.elements.len()
+                    self.atoms_of_all.len()
                 ),
             };
             return Err(Flaw::line(
                 line,
-                format!("{} as atom {}", excerpt(element), self.atoms + 1),
+                format!("{} as atom {}", excerpt(name), self.atoms + 1),
                 expected,
             ));
         }
@@ -42,11 +233,11 @@ impl Frames {
         if self.atoms == 0 {
             return Ok(());
         }
-        if self.atoms != self.elements.len() {
+        if self.atoms != self.atoms_of_all.len() {
             return Err(Flaw::line(
                 line,
                 format!("a frame of {} atoms", self.atoms),
-                format!("{} as in the first", self.elements.len()),
+                format!("{} as in the first", self.atoms_of_all.len()),
             ));
         }
         self.frames += 1;
@@ -59,10 +250,52 @@ impl Frames {
             return Err(Flaw::new("no frame with an atom", "at least one"));
         }
         Ok(Table {
-            columns: 3 * self.elements.len(),
+            columns: 3 * self.atoms_of_all.len(),
             numbers: self.numbers,
         })
     }
+}
+
+/// The symbol of an element as tables have it, empty for what is none.
+fn symbol(text: &str) -> String {
+    let known = |s: &str| Element::iter().find(|e| e.symbol().eq_ignore_ascii_case(s));
+    match known(text) {
+        Some(element) => element.symbol().into(),
+        // Heavy hydrogen has a symbol of its own in many files.
+        None if text.eq_ignore_ascii_case("D") => "H".into(),
+        None => String::new(),
+    }
+}
+
+/// The element of a label of `.xyz`: a symbol, perhaps with a number behind it, or an atomic number.
+fn element_of_label(label: &str) -> String {
+    if let Ok(number) = label.parse::<usize>() {
+        let element = number.checked_sub(1).and_then(|k| Element::iter().nth(k));
+        return element.map_or_else(String::new, |e| e.symbol().into());
+    }
+    let letters = label.find(|c: char| !c.is_ascii_alphabetic());
+    symbol(&label[..letters.unwrap_or(label.len())])
+}
+
+/// The element of a record of `.pdb`: characters 77 and 78, or else the atom name, whose first two characters are the
+/// symbol, to the right.
+fn element_of_record(row: &str) -> String {
+    let given = symbol(row.get(76..78).unwrap_or("").trim());
+    if !given.is_empty() {
+        return given;
+    }
+    let name = row.get(12..16).unwrap_or("");
+    let letters: String = name.chars().filter(char::is_ascii_alphabetic).collect();
+    let first = symbol(letters.get(..1).unwrap_or(""));
+    let to_the_left = name.starts_with(|c: char| c.is_ascii_alphabetic());
+    // Four characters that begin with H are a hydrogen with a long name.
+    if to_the_left && !(first == "H" && name.trim().len() == 4) {
+        let both = symbol(letters.get(..2).unwrap_or(""));
+        if !both.is_empty() {
+            return both;
+        }
+    }
+    first
 }
 
 /// Whether a text starts as chemical `.xyz` does: a line with the number of atoms, alone.
@@ -77,6 +310,10 @@ pub(crate) fn is_chemical(bytes: &[u8]) -> bool {
 
 /// Reads frames of a count line, a comment, and lines `element x y z`.
 pub(crate) fn parse_xyz(bytes: &[u8]) -> Parsed<Table> {
+    frames_of_xyz(bytes)?.into_table()
+}
+
+fn frames_of_xyz(bytes: &[u8]) -> Parsed<Frames> {
     let mut lines = text(bytes)?.lines().enumerate().map(|(at, l)| (at + 1, l));
     let mut frames = Frames::default();
     while let Some((line, first)) = lines.next() {
@@ -116,15 +353,19 @@ pub(crate) fn parse_xyz(bytes: &[u8]) -> Parsed<Table> {
                 })?;
                 *x = number(field, line, k + 2)?;
             }
-            frames.atom(line, element, place)?;
+            frames.atom(line, element, || element_of_label(element), place)?;
         }
         frames.end(last)?;
     }
-    frames.into_table()
+    Ok(frames)
 }
 
 /// Reads the ATOM and HETATM records of every MODEL.
 pub(crate) fn parse_pdb(bytes: &[u8]) -> Parsed<Table> {
+    frames_of_pdb(bytes)?.into_table()
+}
+
+fn frames_of_pdb(bytes: &[u8]) -> Parsed<Frames> {
     let mut frames = Frames::default();
     let mut last = 0;
     for (at, row) in text(bytes)?.lines().enumerate() {
@@ -145,13 +386,14 @@ pub(crate) fn parse_pdb(bytes: &[u8]) -> Parsed<Table> {
                     })?;
                     *x = number(field.trim(), line, from + 1)?;
                 }
-                frames.atom(line, row.get(12..16).unwrap_or("").trim(), place)?;
+                let name = row.get(12..16).unwrap_or("").trim();
+                frames.atom(line, name, || element_of_record(row), place)?;
             }
             _ => {}
         }
     }
     frames.end(last)?;
-    frames.into_table()
+    Ok(frames)
 }
 
 #[cfg(test)]
@@ -190,6 +432,69 @@ mod tests {
         assert_eq!(table.columns, 6);
         assert_eq!(table.numbers[..4], [1.5, 2.0, 3.0, -4.25]);
         assert_eq!(table.numbers.len(), 12);
+    }
+
+    #[test]
+    fn elements_are_told_from_names() {
+        for (label, element) in [
+            ("C", "C"),
+            ("c1", "C"),
+            ("CL", "Cl"),
+            ("6", "C"),
+            ("H12", "H"),
+            ("D", "H"),
+            ("X", ""),
+            ("0", ""),
+            ("999", ""),
+            ("", ""),
+        ] {
+            assert_eq!(element_of_label(label), element, "{label:?}");
+        }
+        for (name, field, element) in [
+            (" CA ", "", "C"),
+            ("CA  ", "", "Ca"),
+            ("HG11", "", "H"),
+            ("1HB ", "", "H"),
+            (" N  ", "N", "N"),
+            ("CA  ", " C", "C"),
+            ("FE  ", "", "Fe"),
+            (" XX ", "", ""),
+            ("    ", "", ""),
+        ] {
+            let row = format!("{:12}{name}{:60}{field:2}", "ATOM", "");
+            assert_eq!(element_of_record(&row), element, "{row:?}");
+        }
+        let carbon = Atom {
+            name: "CA".into(),
+            element: "C".into(),
+        };
+        assert_eq!(carbon.mass(), Some(12.011));
+        assert_eq!(Atom::default().mass(), None);
+    }
+
+    #[test]
+    fn atoms_are_chosen_by_number_name_and_element() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.xyz");
+        std::fs::write(&path, XYZ).unwrap();
+        let all = read_molecule(&path, &PointOptions::default()).unwrap();
+        assert_eq!(all.frames.dimension(), 6);
+        assert_eq!(all.chosen("all").unwrap(), [0, 1]);
+        assert_eq!(all.chosen("heavy").unwrap(), [0]);
+        assert_eq!(all.chosen(" H , 1").unwrap(), [0, 1]);
+        for bad in ["", "0", "1-3", "2-1", "N", "element:N", "1,", "-1", "x-y"] {
+            assert!(all.chosen(bad).is_err(), "{bad:?}");
+        }
+        let one = all.select(&[1]);
+        assert_eq!(one.frames.coordinates(), &[1.0, 2.0, 3.0, 7.0, 8.0, 9.0]);
+        assert_eq!(one.atoms[0].element, "H");
+        let table = folder.path().join("a.csv");
+        std::fs::write(&table, "1,2,3,4\n").unwrap();
+        let error = read_molecule(&table, &PointOptions::default()).unwrap_err();
+        assert!(
+            error.to_string().contains("three coordinates an atom"),
+            "{error}"
+        );
     }
 
     #[test]

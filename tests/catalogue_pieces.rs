@@ -1,0 +1,105 @@
+//! What `check` says about reconstructions of sample surfaces: the pieces of each, how they meet, the immersion
+//! undone, and the homology of every neighborhood. The paper's nine are in `surfaces.rs`.
+
+use crosscap::backends::euclidean::EuclideanOracle;
+use crosscap::prelude::*;
+use crosscap_algorithms::execute::Serial;
+use crosscap_algorithms::homology::{homology, local_homology};
+use crosscap_algorithms::pieces::{Pieces, Sidedness};
+
+fn reconstruct(name: &str, count: usize, eps: f64, dl: f64) -> Outcome {
+    let surface = SampleSurface::find(name).unwrap();
+    let mut sampling = Sampling::new(count, 0);
+    sampling.boundary = surface.has_boundary();
+    let sample = surface.sample(&sampling).unwrap();
+    let mut parameters = Parameters::new(eps, dl);
+    if surface.truth().double_curves == 0 {
+        parameters = parameters.surface();
+    }
+    parameters.boundary = sample.boundary;
+    let outcome = Pipeline::new(parameters).unwrap();
+    let outcome = { outcome }.reconstruct(&sample.points).unwrap();
+    assert!(outcome.is_verified(), "{name}: {:?}", outcome.failures);
+    let truth = surface.truth();
+    assert_eq!(outcome.homology.betti_rational, truth.betti, "{name}");
+    let pieces = outcome.pieces.as_ref().unwrap();
+    assert_eq!(pieces.curves.len(), truth.double_curves, "{name}: {pieces}");
+    // The undone immersion is the abstract surface: its homology is that of its pieces.
+    let h = homology(&pieces.normalization.complex).unwrap();
+    let closed = truth.pieces.iter().filter(|p| p.boundaries == 0);
+    assert_eq!(h.betti_rational[0], truth.pieces.len(), "{name}");
+    assert_eq!(
+        h.betti_rational[2],
+        closed.filter(|p| p.orientable).count(),
+        "{name}"
+    );
+    let euler: i64 = truth.pieces.iter().map(|p| p.euler).sum();
+    assert_eq!(h.euler, euler, "{name}");
+    outcome
+}
+
+fn pieces(outcome: &Outcome) -> &Pieces {
+    outcome.pieces.as_ref().unwrap()
+}
+
+/// How many neighborhoods of the given radius are not contractible, and how many balls hold another sheet.
+fn not_contractible(outcome: &Outcome, radius: f64) -> (usize, usize) {
+    let oracle = EuclideanOracle::new(outcome.mesh.vertices.clone()).unwrap();
+    let found = local_homology(&outcome.mesh.complex, &oracle, radius, &Serial).unwrap();
+    assert_eq!(found.neighborhoods, outcome.mesh.complex.vertices);
+    (found.failures.len(), found.other_sheets)
+}
+
+#[test]
+fn surfaces_with_a_boundary() {
+    for (name, count, eps, dl, said) in [
+        ("hemisphere", 5_000, 0.4, 0.15, "One disc."),
+        ("square", 4_000, 0.4, 0.15, "One disc."),
+        ("annulus", 5_000, 0.3, 0.1, "One annulus."),
+        ("cylinder", 5_000, 0.4, 0.2, "One annulus."),
+    ] {
+        let outcome = reconstruct(name, count, eps, dl);
+        assert_eq!(pieces(&outcome).to_string(), said, "{name}");
+        assert_eq!(not_contractible(&outcome, eps), (0, 0), "{name}");
+    }
+}
+
+#[test]
+fn closed_surfaces_that_cross_in_two_circles() {
+    for (name, count, eps, dl, said) in [
+        (
+            "torus_sphere",
+            40_000,
+            0.35,
+            0.17,
+            "One torus and one sphere. The torus and the sphere meet in two circles, each two-sided on the torus and \
+             two-sided on the sphere (crossing angle",
+        ),
+        (
+            "two_tori",
+            60_000,
+            0.3,
+            0.15,
+            "Two tori. Torus 1 and torus 2 meet in two circles, each two-sided on torus 1 and two-sided on torus 2 \
+             (crossing angle",
+        ),
+    ] {
+        let outcome = reconstruct(name, count, eps, dl);
+        let text = pieces(&outcome).to_string();
+        assert!(text.starts_with(said), "{text}");
+        for curve in &pieces(&outcome).curves {
+            assert!(curve.circle);
+            let two_sided = Some(Sidedness::TwoSided);
+            assert!(curve.preimages.iter().all(|p| p.sidedness == two_sided));
+        }
+        // Balls in which the surface is contractible, crossing or not; and balls that hold a whole tube.
+        let (failures, others) = not_contractible(&outcome, 2.0 * dl);
+        assert_eq!(failures, 0, "{name}");
+        // Beside a crossing at less than a right angle some balls hold the other sheet and not the curve.
+        assert!(
+            others > 0 && others < outcome.mesh.complex.vertices / 5,
+            "{name}: {others}"
+        );
+        assert!(not_contractible(&outcome, 2.3).0 > 100, "{name}");
+    }
+}
