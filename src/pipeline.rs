@@ -407,9 +407,11 @@ impl<S: Scalar> Pipeline<S> {
 
         self.enter(Stage::Neighborhoods, &mut clock);
         let known = match self.estimator {
-            None if !parameters.surface => {
-                MomentTree::new(&cloud)?.dimensions(parameters.eps, parameters.dt, &threads)?
-            }
+            None if !parameters.surface => MomentTree::new(&cloud)?.settled_dimensions(
+                parameters.eps,
+                parameters.dt,
+                &threads,
+            )?,
             _ => Vec::new(),
         };
         let analyzer = Analyzer {
@@ -598,13 +600,36 @@ impl<S: Scalar> Pipeline<S> {
 /// Fewest different points that are worked on.
 const LEAST_POINTS: usize = 8;
 
+/// A number for the place of a row, equal for equal places.
+fn fingerprint<S: Scalar>(row: &[S]) -> u64 {
+    let mut sum = 0u64;
+    for x in row {
+        // Negative and positive zero are equal.
+        sum =
+            (sum.rotate_left(5) ^ (x.as_f64() + 0.0).to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        sum ^= sum >> 29;
+    }
+    sum
+}
+
 /// The first row of every place, in order.
 fn first_of_each<S: Scalar>(cloud: &PointCloud<S>) -> Vec<usize> {
-    let mut rows: Vec<usize> = (0..cloud.len()).collect();
-    rows.sort_by(|&a, &b| order_of_places(cloud, a, b).then(a.cmp(&b)));
-    rows.dedup_by(|b, a| cloud.point(*a) == cloud.point(*b));
-    rows.sort_unstable();
-    rows
+    let mut marks: Vec<(u64, u32)> = cloud
+        .iter()
+        .zip(0..)
+        .map(|(row, i)| (fingerprint(row), i))
+        .collect();
+    marks.sort_unstable();
+    let mut copy = vec![false; cloud.len()];
+    for like in marks.chunk_by(|a, b| a.0 == b.0) {
+        // Rows of one fingerprint are nearly always copies, a few at most.
+        for (at, &(_, row)) in like.iter().enumerate() {
+            copy[row as usize] = like[..at].iter().any(|&(_, first)| {
+                !copy[first as usize] && cloud.point(first as usize) == cloud.point(row as usize)
+            });
+        }
+    }
+    (0..cloud.len()).filter(|&row| !copy[row]).collect()
 }
 
 /// Positions of the boundary rows, or of the rows that they are copies of, among the kept ones.
@@ -614,7 +639,11 @@ fn boundary_rows<S: Scalar>(
     cloud: &PointCloud<S>,
 ) -> Result<Vec<usize>, Error> {
     let mut out = Vec::with_capacity(boundary.len());
-    let mut by_place: Vec<usize> = (0..rows.len()).collect();
+    let mut by_place: Vec<usize> = if boundary.is_empty() {
+        Vec::new()
+    } else {
+        (0..rows.len()).collect()
+    };
     by_place.sort_by(|&a, &b| order_of_places(cloud, rows[a], rows[b]));
     for &row in boundary {
         if row >= cloud.len() {

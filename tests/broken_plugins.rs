@@ -150,6 +150,7 @@ fn analysis(
         eps: 0.6,
         surface: true,
         boundary: Vec::new(),
+        dt: 0.05,
     };
     let analyzer = Analyzer {
         cloud: &cloud,

@@ -30,13 +30,24 @@ pub(crate) fn map<T: Send + Sync, C>(
     scratch: impl Fn() -> C + Sync,
     work: impl Fn(&mut C, usize) -> T + Sync,
 ) -> Vec<T> {
-    let blocks: Vec<OnceLock<Vec<T>>> = (0..count.div_ceil(BLOCK))
+    map_blocks(execute, BLOCK, count, scratch, work)
+}
+
+/// The same with `block` items to a job, for items that are themselves much work.
+pub(crate) fn map_blocks<T: Send + Sync, C>(
+    execute: &dyn Execute,
+    block: usize,
+    count: usize,
+    scratch: impl Fn() -> C + Sync,
+    work: impl Fn(&mut C, usize) -> T + Sync,
+) -> Vec<T> {
+    let blocks: Vec<OnceLock<Vec<T>>> = (0..count.div_ceil(block))
         .map(|_| OnceLock::new())
         .collect();
     execute.ranges(blocks.len(), &|range| {
         let mut own = scratch();
         for b in range {
-            let items = (b * BLOCK..((b + 1) * BLOCK).min(count)).map(|i| work(&mut own, i));
+            let items = (b * block..((b + 1) * block).min(count)).map(|i| work(&mut own, i));
             // A block is given out once, so setting it cannot fail.
             let _ = blocks[b].set(items.collect());
         }

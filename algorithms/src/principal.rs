@@ -42,9 +42,12 @@ impl PrincipalFrame {
             for ((c, x), m) in centered.iter_mut().zip(cloud.point(i)).zip(&mean) {
                 *c = x.as_f64() - m;
             }
-            for a in 0..n {
-                for b in 0..=a {
-                    covariance[(a, b)] += centered[a] * centered[b];
+            // Column by column, as the matrix lies in memory.
+            let columns = covariance.as_mut_slice().chunks_exact_mut(n);
+            for (b, column) in columns.enumerate() {
+                let weight = centered[b];
+                for (c, x) in column[b..].iter_mut().zip(&centered[b..]) {
+                    *c += weight * x;
                 }
             }
         }

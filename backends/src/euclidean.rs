@@ -109,34 +109,6 @@ impl<S: Scalar> EuclideanOracle<S> {
         &self.cloud
     }
 
-    /// The points at distance strictly less than `radius` from `center`, in the order of the
-    /// tree (the same at every call), for loops that need neither distances nor order: the set
-    /// is that of [`NeighborhoodOracle::within`]. The former content of `out` is dropped.
-    ///
-    /// # Panics
-    /// When `center` is not a point.
-    pub fn indices_within(&self, center: usize, radius: S, out: &mut Vec<u32>) {
-        out.clear();
-        if radius.as_f64().is_nan() || radius <= S::zero() {
-            return;
-        }
-        let row = self.cloud.point(center);
-        let limit = radius.as_f64();
-        // Where the tree holds all of R^N its own distances decide, but for a thin shell.
-        let sure = if self.frame.axes.is_none() {
-            let inner = (limit * (1.0 - 2.0 * self.spacing) - self.underflow) * self.frame.scale;
-            let inner = inner * (1.0 - self.slack) - self.slack;
-            if inner > 0.0 { inner * inner } else { -1.0 }
-        } else {
-            -1.0
-        };
-        self.candidates(row, limit, &mut |index, tree_squared| {
-            if tree_squared < sure || self.distance_to(row, index as usize) < radius {
-                out.push(index);
-            }
-        });
-    }
-
     fn distance_to(&self, row: &[S], index: usize) -> S {
         S::of(squared_distance(row, self.cloud.point(index)).sqrt())
     }
@@ -234,6 +206,32 @@ impl<S: Scalar> NeighborhoodOracle for EuclideanOracle<S> {
             out.truncate(count);
         }
         sort(out);
+    }
+
+    /// As the trait says, in the order of the tree.
+    ///
+    /// # Panics
+    /// When `center` is not a point.
+    fn indices_within(&self, center: usize, radius: S, out: &mut Vec<u32>) {
+        out.clear();
+        if radius.as_f64().is_nan() || radius <= S::zero() {
+            return;
+        }
+        let row = self.cloud.point(center);
+        let limit = radius.as_f64();
+        // Where the tree holds all of R^N its own distances decide, but for a thin shell.
+        let sure = if self.frame.axes.is_none() {
+            let inner = (limit * (1.0 - 2.0 * self.spacing) - self.underflow) * self.frame.scale;
+            let inner = inner * (1.0 - self.slack) - self.slack;
+            if inner > 0.0 { inner * inner } else { -1.0 }
+        } else {
+            -1.0
+        };
+        self.candidates(row, limit, &mut |index, tree_squared| {
+            if tree_squared < sure || self.distance_to(row, index as usize) < radius {
+                out.push(index);
+            }
+        });
     }
 
     /// As the trait says; `false`, and nothing in `out`, when `place` does not have as many

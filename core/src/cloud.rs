@@ -1,11 +1,13 @@
 //! A finite set of points in R^N, checked once at the door.
 
 use crate::{Error, Scalar};
+use std::any::Any;
+use std::sync::Arc;
 
 /// `n` points of R^N, row after row in one block of memory.
 ///
 /// Every coordinate is finite: the constructor refuses the rest, so nothing
-/// behind it has to ask again.
+/// behind it has to ask again. Clones share the block until one of them moves a point.
 ///
 /// ```
 /// use crosscap_core::PointCloud;
@@ -17,7 +19,7 @@ use crate::{Error, Scalar};
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointCloud<S> {
     dimension: usize,
-    coordinates: Vec<S>,
+    coordinates: Arc<Vec<S>>,
 }
 
 impl<S: Scalar> PointCloud<S> {
@@ -41,7 +43,7 @@ impl<S: Scalar> PointCloud<S> {
         }
         Ok(Self {
             dimension,
-            coordinates,
+            coordinates: Arc::new(coordinates),
         })
     }
 
@@ -72,7 +74,7 @@ impl<S: Scalar> PointCloud<S> {
     pub fn set_point(&mut self, index: usize, place: &[S]) {
         if place.iter().all(|c| c.is_finite()) {
             let n = self.dimension;
-            self.coordinates[index * n..(index + 1) * n].copy_from_slice(place);
+            Arc::make_mut(&mut self.coordinates)[index * n..(index + 1) * n].copy_from_slice(place);
         }
     }
 
@@ -99,15 +101,18 @@ impl<S: Scalar> PointCloud<S> {
         }
         Self {
             dimension: self.dimension,
-            coordinates,
+            coordinates: Arc::new(coordinates),
         }
     }
 
-    /// The same points with every coordinate in another scalar type.
+    /// The same points with every coordinate in another scalar type; a clone where it is the same.
     pub fn cast<T: Scalar>(&self) -> PointCloud<T> {
+        if let Some(same) = (self as &dyn Any).downcast_ref::<PointCloud<T>>() {
+            return same.clone();
+        }
         PointCloud {
             dimension: self.dimension,
-            coordinates: self.coordinates.iter().map(|c| T::of(c.as_f64())).collect(),
+            coordinates: Arc::new(self.coordinates.iter().map(|c| T::of(c.as_f64())).collect()),
         }
     }
 }

@@ -40,6 +40,16 @@ pub trait NeighborhoodOracle: Sync {
     /// `out`; fewer when there are fewer.
     fn nearest(&self, center: usize, count: usize, out: &mut Vec<Neighbor<Self::Scalar>>);
 
+    /// Writes the points of [`NeighborhoodOracle::within`] alone into `out`, in any order that is the
+    /// same at every call, for loops that need neither distances nor order. An oracle that can
+    /// do it in less time than `within` overrides it.
+    fn indices_within(&self, center: usize, radius: Self::Scalar, out: &mut Vec<u32>) {
+        let mut near = Vec::new();
+        self.within(center, radius, &mut near);
+        out.clear();
+        out.extend(near.iter().map(|x| x.index as u32));
+    }
+
     /// The same two queries about a place that need not be a point of the set, where the
     /// space has coordinates; `false` when it has none.
     fn within_of(

@@ -20,9 +20,11 @@ pub trait Scalar:
 }
 
 impl Scalar for f32 {
+    #[inline]
     fn as_f64(self) -> f64 {
         f64::from(self)
     }
+    #[inline]
     fn of(value: f64) -> Self {
         value as f32
     }
@@ -30,9 +32,11 @@ impl Scalar for f32 {
 }
 
 impl Scalar for f64 {
+    #[inline]
     fn as_f64(self) -> f64 {
         self
     }
+    #[inline]
     fn of(value: f64) -> Self {
         value
     }

@@ -1,6 +1,6 @@
 //! Models of how a surface can be singular.
 
-use crate::Decomposition;
+use crate::{Decomposition, Located};
 
 /// A neighborhood in its own principal coordinates, as a singularity model sees it.
 ///
@@ -15,7 +15,7 @@ pub struct LocalPoints<'a> {
     /// How many leading rows the model is fitted to: the neighborhood. Rows behind them lie
     /// a little farther out and are only labelled.
     pub fitted: usize,
-    /// Which row is the center of the neighborhood.
+    /// Which row is the center of the neighborhood; it may be one behind those that are fitted.
     pub center: usize,
     /// Radius of the neighborhood.
     pub radius: f64,
@@ -107,6 +107,35 @@ pub trait SingularityModel: Sync {
     /// # Errors
     /// The [`Rejection`] that says why the model does not apply.
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection>;
+
+    /// Fits the model once and says of the given `rows` what a decomposition says of the center:
+    /// the dimension of the stratum it is in and the place it is moved to. `None` for a row that
+    /// would have to be the center for an answer.
+    ///
+    /// The fit of a neighborhood holds for all points near its center, and locating a point takes
+    /// much less time than fitting. As it stands the model is fitted anew for every row; a model
+    /// whose fit does not depend on the center does better.
+    ///
+    /// # Errors
+    /// The [`Rejection`] that says why the model does not apply.
+    fn decompose_about(
+        &self,
+        local: &LocalPoints<'_>,
+        rows: &[usize],
+    ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
+        let fit = self.decompose(local)?;
+        let located = rows
+            .iter()
+            .map(|&row| {
+                let own = LocalPoints {
+                    center: row,
+                    ..*local
+                };
+                self.decompose(&own).ok().map(|fit| fit.located(row))
+            })
+            .collect();
+        Ok((fit, located))
+    }
 
     /// Short name for reports and the command line.
     fn name(&self) -> &str;

@@ -55,4 +55,31 @@ impl Decomposition {
             .then(|| self.cells_at_curve.get(label as usize - first).copied())
             .flatten()
     }
+
+    /// What is said of the center, which is row `k`.
+    pub fn located(&self, k: usize) -> Located {
+        Located {
+            dimension: self.dimension_of(k),
+            cells: match self.dimension_of(k) {
+                0 => 0,
+                1 => self.cells_at(self.labels[k]).unwrap_or(0),
+                _ => self.cells_at_curve.first().copied().unwrap_or(0),
+            },
+            place: self.center.clone(),
+            offset: self.center_offset,
+        }
+    }
+}
+
+/// Where a decomposition puts a point of its neighborhood.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Located {
+    /// Dimension of the stratum that the point is in.
+    pub dimension: u8,
+    /// Number of cells that meet in the curve that it is on, or that is near.
+    pub cells: u8,
+    /// As [`Decomposition::center`].
+    pub place: Vec<f64>,
+    /// As [`Decomposition::center_offset`].
+    pub offset: f64,
 }

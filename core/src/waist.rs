@@ -63,6 +63,81 @@ impl<S: Scalar> SparseDistances<S> {
         })
     }
 
+    /// The matrix of `count` landmarks that keeps the distances of all members of each
+    /// neighborhood, `distance(a, b)` asked for once for every pair, `a < b`.
+    ///
+    /// O(sum of k^2 over neighborhoods of k members), in memory for the result alone.
+    ///
+    /// # Errors
+    /// Those of [`SparseDistances::new`].
+    pub fn within(
+        count: usize,
+        neighborhoods: &[CellNeighborhood],
+        mut distance: impl FnMut(u32, u32) -> S,
+    ) -> Result<Self, Error> {
+        let mut holders = vec![0usize; count + 1];
+        for &m in neighborhoods.iter().flat_map(|x| &x.members) {
+            if m as usize >= count {
+                return Err(Error::Index {
+                    what: "landmark",
+                    index: m as usize,
+                    limit: count,
+                });
+            }
+            holders[m as usize + 1] += 1;
+        }
+        for k in 0..count {
+            holders[k + 1] += holders[k];
+        }
+        let mut next = holders.clone();
+        let mut holding = vec![0u32; holders[count]];
+        for (k, near) in neighborhoods.iter().enumerate() {
+            for &m in &near.members {
+                holding[next[m as usize]] = k as u32;
+                next[m as usize] += 1;
+            }
+        }
+        let mut matrix = Self {
+            starts: Vec::with_capacity(count + 1),
+            columns: Vec::new(),
+            values: Vec::new(),
+        };
+        matrix.starts.push(0);
+        let mut seen = vec![u32::MAX; count];
+        for a in 0..count as u32 {
+            let from = matrix.columns.len();
+            for &k in &holding[holders[a as usize]..holders[a as usize + 1]] {
+                for &b in &neighborhoods[k as usize].members {
+                    if b != a && seen[b as usize] != a {
+                        seen[b as usize] = a;
+                        matrix.columns.push(b);
+                    }
+                }
+            }
+            matrix.columns[from..].sort_unstable();
+            for at in from..matrix.columns.len() {
+                let b = matrix.columns[at];
+                let d = if b > a {
+                    distance(a, b)
+                } else {
+                    let row = matrix.starts[b as usize]..matrix.starts[b as usize + 1];
+                    // Pairs are symmetric, so row b has a.
+                    let there = matrix.columns[row.clone()].partition_point(|&c| c < a);
+                    matrix.values[row.start + there]
+                };
+                if !d.is_finite() || d < S::zero() {
+                    return Err(Error::NotFinite {
+                        row: a as usize,
+                        column: b as usize,
+                    });
+                }
+                matrix.values.push(d);
+            }
+            matrix.starts.push(matrix.columns.len());
+        }
+        Ok(matrix)
+    }
+
     /// Number of landmarks.
     pub fn len(&self) -> usize {
         self.starts.len().saturating_sub(1)
@@ -166,7 +241,8 @@ impl<S: Scalar> StratifiedLandmarks<S> {
                 }
             }
         }
-        for near in &self.neighborhoods {
+        let mut round = vec![(u32::MAX, 0u32); count];
+        for (k, near) in self.neighborhoods.iter().enumerate() {
             if near.members.first() != Some(&near.center) {
                 return Err(Error::Shape {
                     found: format!(
@@ -180,7 +256,17 @@ impl<S: Scalar> StratifiedLandmarks<S> {
             for &m in &near.members {
                 in_range(m)?;
             }
+            for (i, &m) in near.members.iter().enumerate() {
+                round[m as usize] = (k as u32, i as u32);
+            }
+            // Every member's row is gone through once, rather than searched for every other.
             for (i, &a) in near.members.iter().enumerate() {
+                let before =
+                    |b: u32| round[b as usize].0 == k as u32 && round[b as usize].1 < i as u32;
+                let kept = self.distances.row(a).filter(|x| before(x.0)).count();
+                if kept == i {
+                    continue;
+                }
                 for &b in &near.members[..i] {
                     if self.distances.get(a, b).is_none() {
                         return Err(Error::Shape {

@@ -41,16 +41,17 @@ impl LocalChart for ClassicalScaling {
             }
         }
         let total: f64 = gram.trace();
-        let eigen = SymmetricEigen::new(gram);
-        let mut order: Vec<usize> = (0..count).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        let leading = match leading(&gram, dimension) {
+            Some(pairs) => pairs,
+            None => all(gram, dimension),
+        };
         let mut coordinates = vec![0.0; count * dimension];
         let mut carried = 0.0;
-        for (k, &column) in order.iter().take(dimension).enumerate() {
-            let value = eigen.eigenvalues[column].max(0.0);
+        for (k, (value, vector)) in leading.iter().enumerate() {
+            let value = value.max(0.0);
             carried += value;
-            for i in 0..count {
-                coordinates[i * dimension + k] = eigen.eigenvectors[(i, column)] * value.sqrt();
+            for (i, x) in vector.iter().enumerate() {
+                coordinates[i * dimension + k] = x * value.sqrt();
             }
         }
         Ok(Chart {
@@ -66,5 +67,167 @@ impl LocalChart for ClassicalScaling {
 
     fn name(&self) -> &str {
         "mds"
+    }
+}
+
+/// Eigenvalues with unit vectors, largest first.
+type Pairs = Vec<(f64, Vec<f64>)>;
+
+/// Vectors beside the wanted ones that a search carries along: it converges like the ratio of
+/// the first eigenvalue left out to the last one wanted.
+const SPARE: usize = 2;
+/// From this size on a search takes less time than all eigenvalues.
+const SMALLEST_SEARCH: usize = 12;
+/// Most rounds of a search; neighborhoods of a surface need about ten.
+const ROUNDS: usize = 60;
+/// First round after which convergence is asked for.
+const FIRST_LOOK: usize = 5;
+/// Error of an eigenvector at which the search ends, as a share of the largest eigenvalue.
+const CONVERGED: f64 = 1e-13;
+
+/// The `wanted` largest eigenvalues by definition, fewer where there are fewer.
+fn all(gram: DMatrix<f64>, wanted: usize) -> Pairs {
+    let eigen = SymmetricEigen::new(gram);
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    order
+        .iter()
+        .take(wanted)
+        .map(|&k| {
+            let vector = eigen.eigenvectors.column(k).iter().copied().collect();
+            (eigen.eigenvalues[k], vector)
+        })
+        .collect()
+}
+
+/// The same by subspace iteration with Rayleigh-Ritz steps; `None` where that is not faster, does
+/// not converge, or where eigenvalues that large are negative, as they are far from Euclidean distances.
+fn leading(gram: &DMatrix<f64>, wanted: usize) -> Option<Pairs> {
+    let count = gram.nrows();
+    let block = wanted + SPARE;
+    if count < SMALLEST_SEARCH.max(2 * block) {
+        return None;
+    }
+    // A fixed start that leans on no direction.
+    let mut basis = DMatrix::from_fn(count, block, |i, k| {
+        (1.7 * (i * block + k) as f64 + 0.3).cos()
+    });
+    let mut image = DMatrix::zeros(count, block);
+    for round in 1..=ROUNDS {
+        if !orthonormalize(&mut basis) {
+            return None;
+        }
+        gram.mul_to(&basis, &mut image);
+        // Charts of a surface have converged after a few rounds, and asking is not cheap.
+        if round < FIRST_LOOK || round % 2 == 0 {
+            std::mem::swap(&mut basis, &mut image);
+            continue;
+        }
+        let eigen = SymmetricEigen::new(basis.tr_mul(&image));
+        let mut order: Vec<usize> = (0..block).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        let turned = DMatrix::from_fn(block, block, |i, k| eigen.eigenvectors[(i, order[k])]);
+        basis = &basis * &turned;
+        image = &image * &turned;
+        let value = |k: usize| eigen.eigenvalues[order[k]];
+        let scale = value(0).abs().max(value(block - 1).abs());
+        let error = |k: usize| (image.column(k) - basis.column(k) * value(k)).norm();
+        if (0..wanted).all(|k| error(k) <= CONVERGED * scale * count as f64) {
+            // Those left out are no larger than the smallest carried along, or have not shown yet.
+            let sound = value(wanted - 1) > 0.0 && value(block - 1) > -value(wanted - 1);
+            return sound.then(|| {
+                (0..wanted)
+                    .map(|k| (value(k), basis.column(k).iter().copied().collect()))
+                    .collect()
+            });
+        }
+        std::mem::swap(&mut basis, &mut image);
+    }
+    None
+}
+
+/// Gram-Schmidt, twice; `false` where the columns are dependent within rounding.
+fn orthonormalize(basis: &mut DMatrix<f64>) -> bool {
+    let (rows, columns) = basis.shape();
+    let data = basis.as_mut_slice();
+    for k in 0..columns {
+        let (done, rest) = data.split_at_mut(k * rows);
+        let own = &mut rest[..rows];
+        let before: f64 = own.iter().map(|x| x * x).sum();
+        for _ in 0..2 {
+            for other in done.chunks_exact(rows) {
+                let along: f64 = other.iter().zip(&*own).map(|(a, b)| a * b).sum();
+                own.iter_mut().zip(other).for_each(|(x, o)| *x -= along * o);
+            }
+        }
+        let square: f64 = own.iter().map(|x| x * x).sum();
+        if !(square > 1e-24 * before) {
+            return false;
+        }
+        let inverse = 1.0 / square.sqrt();
+        own.iter_mut().for_each(|x| *x *= inverse);
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_search_finds_what_all_eigenvalues_say(
+            count in 12_usize..40,
+            bend in 0.0_f64..0.4,
+            noise in prop_oneof![Just(0.0), 0.0_f64..0.3],
+            entries in prop::collection::vec(-1.0_f64..1.0, 160),
+        ) {
+            // Points of a bent sheet, their distances disturbed.
+            let place = |i: usize| {
+                let (a, b) = (entries[4 * i], entries[4 * i + 1]);
+                [a, b, bend * (a * a - a * b)]
+            };
+            let mut distances = vec![0.0; count * count];
+            for i in 0..count {
+                for j in 0..i {
+                    let (p, q) = (place(i), place(j));
+                    let d = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+                    let d = d * (1.0 + noise * entries[4 * j + 2] * entries[4 * i + 3]);
+                    distances[i * count + j] = d;
+                    distances[j * count + i] = d;
+                }
+            }
+            let mut gram = DMatrix::from_fn(count, count, |i, j| distances[i * count + j].powi(2));
+            let means: Vec<f64> = (0..count).map(|i| gram.row(i).mean()).collect();
+            let mean = means.iter().sum::<f64>() / count as f64;
+            for i in 0..count {
+                for j in 0..count {
+                    gram[(i, j)] = -0.5 * (gram[(i, j)] - means[i] - means[j] + mean);
+                }
+            }
+            let expected = all(gram.clone(), 2);
+            if let Some(found) = leading(&gram, 2) {
+                let scale = expected[0].0;
+                for k in 0..2 {
+                    prop_assert!((found[k].0 - expected[k].0).abs() <= 1e-10 * scale);
+                }
+                // What the chart depends on: the product of the two leading parts.
+                let part = |pairs: &Pairs, i: usize, j: usize| -> f64 {
+                    pairs.iter().map(|(value, v)| value * v[i] * v[j]).sum()
+                };
+                // Where the third is as large as the second, either is as good.
+                let third = all(gram, 3)[2].0;
+                if expected[1].0 > 1.01 * third {
+                    for i in 0..count {
+                        for j in 0..count {
+                            prop_assert!((part(&found, i, j) - part(&expected, i, j)).abs() <= 1e-8 * scale);
+                        }
+                    }
+                }
+            } else {
+                prop_assert!(noise > 0.0 || bend > 0.0 || expected[1].0 < 1e-3 * expected[0].0);
+            }
+        }
     }
 }

@@ -33,9 +33,9 @@ impl<S: Scalar> LandmarkSelector for RandomGreedy<S> {
         let mut blocked = vec![false; oracle.len()];
         let mut near = Vec::new();
         let mut block = |row: usize, blocked: &mut Vec<bool>| {
-            oracle.within(row, S::of(separation), &mut near);
-            for x in &near {
-                blocked[x.index] = true;
+            oracle.indices_within(row, S::of(separation), &mut near);
+            for &k in &near {
+                blocked[k as usize] = true;
             }
         };
         for &row in taken {

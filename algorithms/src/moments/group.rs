@@ -32,7 +32,7 @@ pub(super) struct Group {
     pub(super) start: u32,
     pub(super) end: u32,
     /// The node they fill, unless the group is a single point.
-    node: Option<u32>,
+    pub(super) node: Option<u32>,
 }
 
 /// Groups that cover all positions in order.
@@ -206,14 +206,21 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
     }
 
     /// Count and dimension of every ball of the group, in the order of the tree.
+    ///
+    /// Those that `out` has already are left alone.
     #[inline(always)]
-    pub(super) fn dimensions(&mut self, group: Group, dt: f64, out: &mut Vec<LocalDimension>) {
+    pub(super) fn dimensions(&mut self, group: Group, dt: f64, out: &mut [Option<LocalDimension>]) {
+        if out.iter().all(Option::is_some) {
+            return;
+        }
         self.prepare(group);
-        for position in group.start as usize..group.end as usize {
-            self.part(position);
-            let count = self.parts.count;
-            let dimension = if count <= 1 { 0 } else { self.dimension(dt) };
-            out.push(LocalDimension { count, dimension });
+        for (position, out) in (group.start as usize..).zip(out) {
+            if out.is_none() {
+                self.part(position);
+                let count = self.parts.count;
+                let dimension = if count <= 1 { 0 } else { self.dimension(dt) };
+                *out = Some(LocalDimension { count, dimension });
+            }
         }
     }
 

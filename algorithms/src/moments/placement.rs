@@ -95,14 +95,16 @@ impl Placement {
         for &k in &order {
             axes.extend(eigen.eigenvectors.column(k).iter());
         }
-        let mut turned = Vec::with_capacity(places.len());
+        // In place: a second copy of a large cloud is most of the memory there is.
+        let mut turned = vec![0.0; n];
         let mut largest = vec![0.0_f64; n];
-        for row in places.chunks_exact(n) {
-            for (axis, l) in axes.chunks_exact(n).zip(&mut largest) {
-                let y: f64 = axis.iter().zip(row).map(|(a, x)| a * x).sum();
-                *l = l.max(y.abs());
-                turned.push(y);
+        for row in places.chunks_exact_mut(n) {
+            for ((axis, l), y) in axes.chunks_exact(n).zip(&mut largest).zip(&mut turned) {
+                let along: f64 = axis.iter().zip(&*row).map(|(a, x)| a * x).sum();
+                *y = along;
+                *l = l.max(along.abs());
             }
+            row.copy_from_slice(&turned);
         }
         let rounding = 16.0 * n as f64 * f64::EPSILON;
         let kept = largest
@@ -111,17 +113,15 @@ impl Placement {
             .map_or(1, |k| k + 1);
         self.dropped = largest[kept..].iter().map(|l| l * l).sum::<f64>().sqrt();
         if kept < n {
-            let narrow = turned
-                .chunks_exact(n)
-                .flat_map(|row| &row[..kept])
-                .copied()
-                .collect();
-            turned = narrow;
+            for k in 0..places.len() / n {
+                places.copy_within(k * n..k * n + kept, k * kept);
+            }
+            places.truncate(places.len() / n * kept);
+            places.shrink_to_fit();
             axes.truncate(kept * n);
         }
         self.n = kept;
         self.axes = Some(axes);
-        *places = turned;
     }
 
     /// Some of the places, about their mean.

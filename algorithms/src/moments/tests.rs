@@ -33,6 +33,12 @@ fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
     let tree = MomentTree::new(cloud).unwrap();
     let found = tree.dimensions(eps, dt, &Serial).unwrap();
     assert_eq!(found.len(), cloud.len());
+    let settled = tree.settled_dimensions(eps, dt, &Serial).unwrap();
+    for (i, (a, b)) in found.iter().zip(&settled).enumerate() {
+        // A ball whose share is the tolerance within rounding is not settled with others.
+        assert_eq!(a.dimension, b.dimension, "point {i}, eps {eps}");
+        assert!(a.count == b.count || a.dimension == 2 && a.count.min(b.count) >= 16);
+    }
     let n = cloud.dimension();
     let balls = Mutex::new(vec![BallMoments::default(); cloud.len()]);
     tree.balls(eps, &Serial, &|ball| {

@@ -53,7 +53,7 @@ impl SingularityModel for BareCurve {
                 limit: self.tolerance.ep,
             });
         }
-        let center = points[local.center];
+        let center = all[local.center];
         let foot = curve.foot(&center);
         Ok(Decomposition {
             strata: vec![Stratum { dimension: 1 }],

@@ -154,7 +154,7 @@ impl Fit {
                 limit: ep,
             });
         }
-        let mut t = curve.parameter(&points[local.center]);
+        let mut t = curve.parameter(&all[local.center]);
         let mut height = f64::INFINITY;
         for _ in 0..12 {
             let x = curve.at(t);
@@ -170,8 +170,7 @@ impl Fit {
             }
         }
         let apex = curve.at(t);
-        if height > 1e-6 * local.radius
-            || (apex - points[local.center]).norm() > REACH * local.radius
+        if height > 1e-6 * local.radius || (apex - all[local.center]).norm() > REACH * local.radius
         {
             return Err(Rejection::NoRealSolution);
         }

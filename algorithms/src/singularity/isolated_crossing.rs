@@ -115,7 +115,7 @@ impl SingularityModel for IsolatedCrossing {
             }
             owner = assign(&sheets);
         }
-        let center = points[local.center];
+        let center = all[local.center];
         let apex = meet(&sheets, center, REACH * local.radius).ok_or(Rejection::NoRealSolution)?;
         let mut labels = vec![0u8; all.len()];
         let mut held = [0usize; 2];

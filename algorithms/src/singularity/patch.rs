@@ -16,6 +16,16 @@ pub struct QuadraticPatch {
     coefficients: [f64; 6],
 }
 
+/// Which power a^i b^j the product of two of the first six is, 1, a, b, a^2, a b, b^2.
+const PRODUCT: [[usize; 6]; 6] = [
+    [0, 1, 2, 3, 4, 5],
+    [1, 3, 4, 6, 7, 8],
+    [2, 4, 5, 7, 8, 9],
+    [3, 6, 7, 10, 11, 12],
+    [4, 7, 8, 11, 12, 13],
+    [5, 8, 9, 12, 13, 14],
+];
+
 /// Fewest points that a patch is fitted to: twice its coefficients.
 pub(crate) const PATCH_POINTS: usize = 12;
 
@@ -33,17 +43,42 @@ impl QuadraticPatch {
     /// frame; `scale` is a length typical of the points (conditioning). `false` and
     /// unchanged when there are fewer than 12 points or they leave a coefficient open.
     pub fn fit(&mut self, points: impl Iterator<Item = Vector3<f64>>, scale: f64) -> bool {
-        let mut normal = SMatrix::<f64, 6, 6>::zeros();
-        let mut right = SVector::<f64, 6>::zeros();
+        // Sums of a^i b^j up to degree 4, from which all normal equations are read.
+        let mut sums = [0.0; 15];
+        let mut heights = [0.0; 6];
         let mut count = 0;
+        let inverse = 1.0 / scale;
         for x in points {
             let (a, b, h) = self.local(&x);
-            let (a, b, h) = (a / scale, b / scale, h / scale);
-            let row = SVector::<f64, 6>::from([1.0, a, b, a * a, a * b, b * b]);
-            normal.ger(1.0, &row, &row, 1.0);
-            right.axpy(h, &row, 1.0);
+            let (a, b, h) = (a * inverse, b * inverse, h * inverse);
+            let (aa, ab, bb) = (a * a, a * b, b * b);
+            let powers = [
+                1.0,
+                a,
+                b,
+                aa,
+                ab,
+                bb,
+                aa * a,
+                aa * b,
+                a * bb,
+                bb * b,
+                aa * aa,
+                aa * ab,
+                aa * bb,
+                ab * bb,
+                bb * bb,
+            ];
+            for (s, p) in sums.iter_mut().zip(&powers) {
+                *s += p;
+            }
+            for (s, p) in heights.iter_mut().zip(&powers) {
+                *s += h * p;
+            }
             count += 1;
         }
+        let mut normal = SMatrix::<f64, 6, 6>::from_fn(|i, j| sums[PRODUCT[i][j]]);
+        let right = SVector::<f64, 6>::from(heights);
         if count < PATCH_POINTS {
             return false;
         }
@@ -89,8 +124,27 @@ impl QuadraticPatch {
 
     /// Signed distance of `x` from the patch, to first order: height over slope.
     pub fn signed_distance(&self, x: &Vector3<f64>) -> f64 {
-        let (value, gradient) = self.height(x);
-        value / gradient.norm()
+        let mut out = [0.0];
+        self.signed_distances([&[x.x], &[x.y], &[x.z]], &mut out);
+        out[0]
+    }
+
+    /// The signed distances of many points, given and written coordinate by coordinate.
+    pub(crate) fn signed_distances(&self, places: [&[f64]; 3], out: &mut [f64]) {
+        let [first, second, normal] = self.frame;
+        let origin = self.frame.map(|axis| axis.dot(&self.origin));
+        let [c0, ca, cb, caa, cab, cbb] = self.coefficients;
+        let [xs, ys, zs] = places;
+        for (((o, &x), &y), &z) in out.iter_mut().zip(xs).zip(ys).zip(zs) {
+            let a = first.x * x + first.y * y + first.z * z - origin[0];
+            let b = second.x * x + second.y * y + second.z * z - origin[1];
+            let h = normal.x * x + normal.y * y + normal.z * z - origin[2];
+            let value = h - (c0 + a * (ca + caa * a + cab * b) + b * (cb + cbb * b));
+            // The frame is orthonormal, so the gradient is (-slopes, 1) in it.
+            let along = ca + 2.0 * caa * a + cab * b;
+            let across = cb + cab * a + 2.0 * cbb * b;
+            *o = value / (1.0 + along * along + across * across).sqrt();
+        }
     }
 }
 

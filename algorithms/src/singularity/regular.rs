@@ -25,9 +25,12 @@ impl SingularityModel for OneSheet {
         let mut patch =
             QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
         patch.fit((0..local.fitted).map(place), local.radius);
-        let sum: f64 = (0..local.fitted)
-            .map(|k| patch.signed_distance(&place(k)).powi(2))
-            .sum();
+        let column =
+            |axis: usize| -> Vec<f64> { (0..local.fitted).map(|k| local.point(k)[axis]).collect() };
+        let columns = [column(0), column(1), column(2)];
+        let mut distances = vec![0.0; local.fitted];
+        patch.signed_distances(columns.each_ref().map(Vec::as_slice), &mut distances);
+        let sum: f64 = distances.iter().map(|d| d * d).sum();
         Ok(Decomposition {
             strata: vec![Stratum { dimension: 2 }],
             labels: vec![0; local.len()],

@@ -5,7 +5,9 @@ use super::patch::PATCH_POINTS;
 use super::sheets::Sheets;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
-use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{
+    Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
+};
 use nalgebra::{Matrix3, Vector3};
 
 /// Three sheets of space in general position: a triple point, from which six arcs of double
@@ -60,6 +62,14 @@ impl SingularityModel for TriplePoint {
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        Ok(self.decompose_about(local, &[])?.0)
+    }
+
+    fn decompose_about(
+        &self,
+        local: &LocalPoints<'_>,
+        rows: &[usize],
+    ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
         at_least(4 * PATCH_POINTS, local)?;
         let count = local.fitted;
         let ep = self.tolerance.ep;
@@ -78,7 +88,7 @@ impl SingularityModel for TriplePoint {
             return Err(Rejection::NoRealSolution);
         }
         let sheets = Sheets::new(&planes, &all, count, local.radius, |_, d, _| d);
-        let center = points[local.center];
+        let center = all[local.center];
         let apex = sheets
             .meet(&[0, 1, 2], 3, center, REACH * local.radius)
             .ok_or(Rejection::NoRealSolution)?;
@@ -117,19 +127,26 @@ impl SingularityModel for TriplePoint {
             let stratum = 7 + held[7..].iter().position(|&h| h == 0).unwrap_or(0);
             return Err(Rejection::EmptyStratum { stratum, found: 0 });
         }
-        let label = labels[local.center];
-        let (moved, center_offset) = match label {
-            0 => (apex, (apex - center).norm()),
-            1..=6 => {
-                let third = usize::from((label - 1) / 2);
-                let pair = [(third + 1) % 3, (third + 2) % 3];
-                let x = sheets
-                    .meet(&pair, 2, center, REACH * local.radius)
-                    .ok_or(Rejection::NoRealSolution)?;
-                (x, (x - center).norm())
-            }
-            _ => (center, f64::INFINITY),
+        let locate = |k: usize| -> Option<Located> {
+            let x = all[k];
+            let (dimension, place) = match labels[k] {
+                0 => (0, Some(apex)),
+                arc @ 1..=6 => {
+                    let third = usize::from((arc - 1) / 2);
+                    let pair = [(third + 1) % 3, (third + 2) % 3];
+                    (1, Some(sheets.meet(&pair, 2, x, REACH * local.radius)?))
+                }
+                _ => (2, None),
+            };
+            Some(Located {
+                dimension,
+                cells: 4 * u8::from(dimension > 0),
+                place: place.unwrap_or(x).iter().copied().collect(),
+                offset: place.map_or(f64::INFINITY, |p| (p - x).norm()),
+            })
         };
+        let center = locate(local.center).ok_or(Rejection::NoRealSolution)?;
+        let located = rows.iter().map(|&row| locate(row)).collect();
         let dimensions = [0u8].into_iter().chain([1; 6]).chain([2; 12]);
         let continuations = (0..3)
             .flat_map(|k| {
@@ -141,17 +158,18 @@ impl SingularityModel for TriplePoint {
                 })
             })
             .collect();
-        Ok(Decomposition {
+        let decomposition = Decomposition {
             strata: dimensions.map(|dimension| Stratum { dimension }).collect(),
-            labels,
             continuations,
             cells_at_curve: vec![4; 6],
             residual,
             parameters: 24,
             points: vec![apex.iter().copied().collect()],
-            center: moved.iter().copied().collect(),
-            center_offset,
-        })
+            center: center.place,
+            center_offset: center.offset,
+            labels,
+        };
+        Ok((decomposition, located))
     }
 
     fn name(&self) -> &str {

@@ -1,7 +1,9 @@
 //! Two sheets that cross in a curve: the quadric that factors into two planes.
 
 use super::patch::{PATCH_POINTS, QuadraticPatch};
-use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{
+    Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
+};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector4};
 
 /// Two planes `n_k . x + c_k = 0` of space with unit normals.
@@ -25,23 +27,59 @@ impl PlanePair {
         points: impl Iterator<Item = Vector3<f64>>,
         scale: f64,
     ) -> Result<Self, Rejection> {
-        let mut normal = SMatrix::<f64, 10, 10>::zeros();
+        // Sums of x^i y^j z^k up to degree 4, from which the normal matrix is read.
+        let mut sums = [0.0; POWERS];
+        let inverse = 1.0 / scale;
         for x in points {
-            let x = x / scale;
-            let row = SVector::<f64, 10>::from([
-                x.x * x.x,
-                2.0 * x.x * x.y,
-                2.0 * x.x * x.z,
-                2.0 * x.x,
-                x.y * x.y,
-                2.0 * x.y * x.z,
-                2.0 * x.y,
-                x.z * x.z,
-                2.0 * x.z,
+            let [x, y, z] = [x.x * inverse, x.y * inverse, x.z * inverse];
+            let second = [x * x, x * y, x * z, y * y, y * z, z * z];
+            let [xx, xy, xz, yy, yz, zz] = second;
+            let powers = [
                 1.0,
-            ]);
-            normal.ger(1.0, &row, &row, 1.0);
+                x,
+                y,
+                z,
+                xx,
+                xy,
+                xz,
+                yy,
+                yz,
+                zz,
+                xx * x,
+                xx * y,
+                xx * z,
+                xy * y,
+                xy * z,
+                xz * z,
+                yy * y,
+                yy * z,
+                yz * z,
+                zz * z,
+                xx * xx,
+                xx * xy,
+                xx * xz,
+                xx * yy,
+                xx * yz,
+                xx * zz,
+                xy * yy,
+                xy * yz,
+                xy * zz,
+                xz * zz,
+                yy * yy,
+                yy * yz,
+                yy * zz,
+                yz * zz,
+                zz * zz,
+            ];
+            for (s, p) in sums.iter_mut().zip(&powers) {
+                *s += p;
+            }
         }
+        let normal = SMatrix::<f64, 10, 10>::from_fn(|p, q| {
+            let ((u, e), (v, f)) = (ENTRIES[p], ENTRIES[q]);
+            let exponents = [e[0] + f[0], e[1] + f[1], e[2] + f[2]];
+            u * v * sums[position(exponents)]
+        });
         let eigen = normal.symmetric_eigen();
         let least = eigen.eigenvalues.imin();
         let a = eigen.eigenvectors.column(least);
@@ -185,6 +223,31 @@ impl PlanePair {
     }
 }
 
+/// Number of powers x^i y^j z^k up to degree 4.
+const POWERS: usize = 35;
+
+/// The entries of the paper's row of M: factor and exponents.
+const ENTRIES: [(f64, [usize; 3]); 10] = [
+    (1.0, [2, 0, 0]),
+    (2.0, [1, 1, 0]),
+    (2.0, [1, 0, 1]),
+    (2.0, [1, 0, 0]),
+    (1.0, [0, 2, 0]),
+    (2.0, [0, 1, 1]),
+    (2.0, [0, 1, 0]),
+    (1.0, [0, 0, 2]),
+    (2.0, [0, 0, 1]),
+    (1.0, [0, 0, 0]),
+];
+
+/// Where x^i y^j z^k is among the powers: by degree, then by falling i, then by falling j.
+const fn position([i, j, k]: [usize; 3]) -> usize {
+    let degree = i + j + k;
+    let before = degree * (degree + 1) * (degree + 2) / 6;
+    let rest = j + k;
+    before + rest * (rest + 1) / 2 + k
+}
+
 /// Two sheets that cross along a double curve.
 ///
 /// The planes are the paper's quadric; from their labels one quadratic patch a sheet is
@@ -239,27 +302,9 @@ impl TwoPlanes {
             curved: true,
         })
     }
-}
 
-/// Whether the data show a crossing at `place`: some point in the band and points of three
-/// cells close by. Patches also cross where they are mere extrapolation; one cell may have a hole
-/// in its sample there.
-fn supported(place: &Vector3<f64>, points: &[Vector3<f64>], labels: &[u8], radius: f64) -> bool {
-    let mut nearest = [f64::INFINITY; 5];
-    for (x, &label) in points.iter().zip(labels) {
-        let n = &mut nearest[label as usize];
-        *n = n.min((x - place).norm());
-    }
-    let close = |d: &f64| *d < SUPPORT_REACH * radius;
-    close(&nearest[0]) && nearest[1..].iter().filter(|d| close(d)).count() >= 3
-}
-
-impl SingularityModel for TwoPlanes {
-    fn local_dimension(&self) -> usize {
-        3
-    }
-
-    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+    /// Fits planes, then patches, and labels all points.
+    fn fit(&self, local: &LocalPoints<'_>) -> Result<Sheets, Rejection> {
         let count = local.fitted;
         if count < 2 * PATCH_POINTS {
             return Err(Rejection::TooFewPoints {
@@ -279,44 +324,43 @@ impl SingularityModel for TwoPlanes {
         }
         let center = points[local.center];
         let (tangent, origin) = planes.line(&center).ok_or(Rejection::NoRealSolution)?;
-        let patch = |k: usize| {
-            let normal = planes.normals[k];
-            let start = QuadraticPatch::plane(origin, [tangent, normal.cross(&tangent), normal]);
-            // The plane itself, through the line.
-            start
-        };
-        let mut sheets = [patch(0), patch(1)];
-        let mut sheet = vec![0u8; all.len()];
-        let assign = |sheets: &[QuadraticPatch; 2], sheet: &mut [u8]| {
-            for (s, x) in sheet.iter_mut().zip(&all) {
-                let d0 = sheets[0].signed_distance(x).abs();
-                let d1 = sheets[1].signed_distance(x).abs();
-                *s = u8::from(d1 < d0);
-            }
-        };
-        assign(&sheets, &mut sheet);
+        // The plane itself, through the line.
+        let mut sheets = planes
+            .normals
+            .map(|normal| QuadraticPatch::plane(origin, [tangent, normal.cross(&tangent), normal]));
+        let columns = [0, 1, 2].map(|axis| all.iter().map(|x| x[axis]).collect::<Vec<f64>>());
+        let columns = columns.each_ref().map(Vec::as_slice);
+        let mut distances = [vec![0.0; all.len()], vec![0.0; all.len()]];
+        let nearer = |d: &[Vec<f64>; 2], k: usize| usize::from(d[1][k].abs() < d[0][k].abs());
+        // Only the fitted rows matter until the patches are final.
+        let first = columns.map(|c| &c[..count]);
         if self.curved {
             for _ in 0..3 {
-                for (k, patch) in sheets.iter_mut().enumerate() {
-                    let own = points
-                        .iter()
-                        .zip(&sheet)
-                        .filter(|&(_, &s)| s as usize == k)
-                        .map(|(x, _)| *x);
-                    patch.fit(own, local.radius);
+                for (patch, out) in sheets.iter().zip(&mut distances) {
+                    patch.signed_distances(first, &mut out[..count]);
                 }
-                assign(&sheets, &mut sheet);
+                for (own, patch) in sheets.iter_mut().enumerate() {
+                    let points = points
+                        .iter()
+                        .enumerate()
+                        .filter(|&(k, _)| nearer(&distances, k) == own)
+                        .map(|(_, x)| *x);
+                    patch.fit(points, local.radius);
+                }
             }
+        }
+        for (patch, out) in sheets.iter().zip(&mut distances) {
+            patch.signed_distances(columns, out);
         }
         let mut labels = vec![0u8; all.len()];
         let mut sum = 0.0;
         let mut astray = 0usize;
         let mut held = [0usize; 5];
-        for (k, ((label, x), &s)) in labels.iter_mut().zip(&all).zip(&sheet).enumerate() {
-            let own = sheets[s as usize].signed_distance(x);
-            let other = sheets[1 - s as usize].signed_distance(x);
+        for (k, label) in labels.iter_mut().enumerate() {
+            let sheet = nearer(&distances, k);
+            let (own, other) = (distances[sheet][k], distances[1 - sheet][k]);
             // Cells in cyclic order around the curve: 1, 2, 3, 4.
-            let cell = match (s, other >= 0.0) {
+            let cell = match (sheet, other >= 0.0) {
                 (0, true) => 1,
                 (1, true) => 2,
                 (0, false) => 3,
@@ -356,31 +400,100 @@ impl SingularityModel for TwoPlanes {
                 found: held[stratum],
             });
         }
-        let reached = meet(&sheets, center, LARGEST_STEP * local.radius)
-            .filter(|x| supported(x, points, &labels, local.radius));
-        let (moved, center_offset) = match reached {
-            Some(x)
-                if labels[local.center] == 0 || (x - center).norm() < WITNESS_REACH * self.ep =>
-            {
-                (x, (x - center).norm())
+        Ok(Sheets {
+            ep: self.ep,
+            radius: local.radius,
+            all,
+            fitted: count,
+            sheets,
+            origin,
+            labels,
+            residual,
+        })
+    }
+}
+
+/// Two sheets fitted to a neighborhood.
+struct Sheets {
+    ep: f64,
+    radius: f64,
+    all: Vec<Vector3<f64>>,
+    fitted: usize,
+    sheets: [QuadraticPatch; 2],
+    /// Where the line of the planes comes nearest to the center.
+    origin: Vector3<f64>,
+    labels: Vec<u8>,
+    residual: f64,
+}
+
+impl Sheets {
+    /// Where a row is, `None` where it is in the band of the curve and no curve can be found.
+    fn locate(&self, row: usize) -> Option<Located> {
+        let x = self.all[row];
+        let singular = self.labels[row] == 0;
+        let (points, labels) = (&self.all[..self.fitted], &self.labels[..self.fitted]);
+        let reached = meet(&self.sheets, x, LARGEST_STEP * self.radius)
+            .filter(|place| supported(place, points, labels, self.radius));
+        let (place, offset) = match reached {
+            Some(place) if singular || (place - x).norm() < WITNESS_REACH * self.ep => {
+                (place, (place - x).norm())
             }
-            Some(_) => (origin, f64::INFINITY),
-            None if labels[local.center] == 0 => return Err(Rejection::NoRealSolution),
-            None => (origin, f64::INFINITY),
+            None if singular => return None,
+            _ => (self.origin, f64::INFINITY),
         };
-        Ok(Decomposition {
+        Some(Located {
+            dimension: if singular { 1 } else { 2 },
+            cells: 4,
+            place: place.iter().copied().collect(),
+            offset,
+        })
+    }
+}
+
+/// Whether the data show a crossing at `place`: some point in the band and points of three
+/// cells close by. Patches also cross where they are mere extrapolation; one cell may have a hole
+/// in its sample there.
+fn supported(place: &Vector3<f64>, points: &[Vector3<f64>], labels: &[u8], radius: f64) -> bool {
+    let mut nearest = [f64::INFINITY; 5];
+    for (x, &label) in points.iter().zip(labels) {
+        let n = &mut nearest[label as usize];
+        *n = n.min((x - place).norm());
+    }
+    let close = |d: &f64| *d < SUPPORT_REACH * radius;
+    close(&nearest[0]) && nearest[1..].iter().filter(|d| close(d)).count() >= 3
+}
+
+impl SingularityModel for TwoPlanes {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        Ok(self.decompose_about(local, &[])?.0)
+    }
+
+    fn decompose_about(
+        &self,
+        local: &LocalPoints<'_>,
+        rows: &[usize],
+    ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
+        let fit = self.fit(local)?;
+        let center = fit.locate(local.center).ok_or(Rejection::NoRealSolution)?;
+        let located = rows.iter().map(|&row| fit.locate(row)).collect();
+        let decomposition = Decomposition {
             strata: std::iter::once(Stratum { dimension: 1 })
                 .chain(std::iter::repeat_n(Stratum { dimension: 2 }, 4))
                 .collect(),
-            labels,
             continuations: vec![(1, 3), (2, 4)],
             cells_at_curve: vec![4],
-            residual,
+            residual: fit.residual,
             parameters: 16,
             points: Vec::new(),
-            center: moved.iter().copied().collect(),
-            center_offset,
-        })
+            center: center.place,
+            center_offset: center.offset,
+            labels: fit.labels,
+        };
+        Ok((decomposition, located))
     }
 
     fn name(&self) -> &str {

@@ -5,7 +5,9 @@ use super::patch::PATCH_POINTS;
 use super::sheets::Sheets;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
-use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{
+    Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
+};
 use nalgebra::{Matrix3, Vector3};
 
 /// Three half sheets of space on a common curve, at any angles: a Y-junction.
@@ -122,6 +124,14 @@ impl SingularityModel for YJunction {
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        Ok(self.decompose_about(local, &[])?.0)
+    }
+
+    fn decompose_about(
+        &self,
+        local: &LocalPoints<'_>,
+        rows: &[usize],
+    ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
         at_least(3 * PATCH_POINTS, local)?;
         let count = local.fitted;
         let ep = self.tolerance.ep;
@@ -136,7 +146,6 @@ impl SingularityModel for YJunction {
             book.distance(k, d, x)
         });
 
-        let center = points[local.center];
         let mut labels = vec![0u8; all.len()];
         let mut held = [0usize; 4];
         let mut sum = 0.0;
@@ -158,37 +167,47 @@ impl SingularityModel for YJunction {
                 found: held[stratum],
             });
         }
-        let reached = sheets
-            .meet(&[0, 1, 2], 2, center, LARGEST_STEP * local.radius)
-            .filter(|place| {
-                let mut nearest = [f64::INFINITY; 4];
-                for (x, &label) in points.iter().zip(&labels) {
-                    let n = &mut nearest[usize::from(label)];
-                    *n = n.min((x - place).norm());
-                }
-                nearest[1..]
-                    .iter()
-                    .all(|&d| d < SUPPORT_REACH * local.radius)
-            });
-        let on_curve = labels[local.center] == 0;
-        let (moved, center_offset) = match reached {
-            Some(x) if on_curve || (x - center).norm() < WITNESS_REACH * ep => {
-                (x, (x - center).norm())
+        let supported = |place: &Vector3<f64>| {
+            let mut nearest = [f64::INFINITY; 4];
+            for (x, &label) in points.iter().zip(&labels) {
+                let n = &mut nearest[usize::from(label)];
+                *n = n.min((x - place).norm());
             }
-            None if on_curve => return Err(Rejection::NoRealSolution),
-            _ => (book.place, f64::INFINITY),
+            nearest[1..]
+                .iter()
+                .all(|&d| d < SUPPORT_REACH * local.radius)
         };
-        Ok(Decomposition {
+        let locate = |k: usize| -> Option<Located> {
+            let x = all[k];
+            let on_curve = labels[k] == 0;
+            let place = sheets
+                .meet(&[0, 1, 2], 2, x, LARGEST_STEP * local.radius)
+                .filter(|p| on_curve || (p - x).norm() < WITNESS_REACH * ep)
+                .filter(supported);
+            if on_curve && place.is_none() {
+                return None;
+            }
+            Some(Located {
+                dimension: if on_curve { 1 } else { 2 },
+                cells: 3,
+                place: place.unwrap_or(x).iter().copied().collect(),
+                offset: place.map_or(f64::INFINITY, |p| (p - x).norm()),
+            })
+        };
+        let center = locate(local.center).ok_or(Rejection::NoRealSolution)?;
+        let located = rows.iter().map(|&row| locate(row)).collect();
+        let decomposition = Decomposition {
             strata: [1, 2, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
-            labels,
             continuations: Vec::new(),
             cells_at_curve: vec![3],
             residual,
             parameters: 22,
             points: Vec::new(),
-            center: moved.iter().copied().collect(),
-            center_offset,
-        })
+            center: center.place,
+            center_offset: center.offset,
+            labels,
+        };
+        Ok((decomposition, located))
     }
 
     fn name(&self) -> &str {

@@ -1,13 +1,14 @@
 //! Which stratum every point of the cloud is in.
 
+use super::net::{Asked, SPEAKS_FOR};
 use crate::audit::{self, Faults};
 use crate::execute::{self, Execute};
 use crate::moments::LocalDimension;
 use crate::principal::PrincipalFrame;
 use crate::singularity::OneSheet;
 use crosscap_core::{
-    Decomposition, DimensionEstimator, Error, LocalPoints, MetricSpace, Neighbor, Neighborhood,
-    NeighborhoodOracle, PointCloud, Scalar, SingularityModel, squared_distance,
+    Decomposition, DimensionEstimator, Error, LocalPoints, Located, MetricSpace, Neighbor,
+    Neighborhood, NeighborhoodOracle, PointCloud, Scalar, SingularityModel, squared_distance,
 };
 
 /// What a point of the cloud is.
@@ -106,14 +107,14 @@ pub(super) struct Witness {
 
 impl Analysis {
     /// Enters what a point turned out to be.
-    fn take(&mut self, i: usize, kind: Kind, places: &mut [f64], boundary: bool) {
-        match kind {
+    fn take(&mut self, i: usize, verdict: Verdict, boundary: bool) {
+        self.apexes.extend(verdict.apex);
+        match verdict.kind {
             Kind::Regular => {}
             Kind::Unexplained => self.unexplained.push(i),
             Kind::Near(witness) => self.witnesses.push(witness),
             Kind::Singular(w) => {
-                let width = w.place.len();
-                places[i * width..(i + 1) * width].copy_from_slice(&w.place);
+                self.places.set_point(i, &w.place);
                 self.enter(&w, boundary);
             }
         }
@@ -203,18 +204,38 @@ const GAIN: f64 = 0.5;
 /// Share of unexplained points from which the radius is declared unfit.
 const UNEXPLAINED_SHARE: f64 = 0.05;
 
+/// A curve is looked for this close to its points where the dimension does not show it, as a share
+/// of the radius.
+const BESIDE: f64 = 0.5;
 /// A point farther than this share of the radius from a curve says nothing about it.
 const WITNESS_REACH: f64 = 0.4;
 /// A point farther than this share of the radius from a 0-stratum does not stand for it.
 const APEX_REACH: f64 = 0.5;
 
 /// What one point turned out to be.
-struct Found {
-    dimension: u8,
-    neighbors: usize,
+/// What one point turned out to be.
+#[derive(Debug)]
+pub(super) struct Verdict {
     kind: Kind,
     apex: Option<Witness>,
 }
+
+impl Verdict {
+    const UNEXPLAINED: Self = Self {
+        kind: Kind::Unexplained,
+        apex: None,
+    };
+    const REGULAR: Self = Self {
+        kind: Kind::Regular,
+        apex: None,
+    };
+
+    pub(super) fn is_unexplained(&self) -> bool {
+        matches!(self.kind, Kind::Unexplained)
+    }
+}
+
+#[derive(Debug)]
 enum Kind {
     Regular,
     Unexplained,
@@ -241,7 +262,7 @@ pub(super) struct Scratch<S> {
 }
 
 impl<S> Scratch<S> {
-    fn reporting(faults: &Faults) -> Self {
+    pub(super) fn reporting(faults: &Faults) -> Self {
         Self {
             near: Vec::new(),
             rest: Vec::new(),
@@ -277,15 +298,13 @@ impl<S: Scalar> Analyzer<'_, S> {
                 limit: n,
             })? = true;
         }
-        let mut places = self.cloud.cast::<f64>().coordinates().to_vec();
-        let width = self.cloud.dimension();
         let mut out = Analysis {
             roles: boundary
                 .iter()
                 .map(|&b| if b { Role::Boundary } else { Role::Regular })
                 .collect(),
             dimensions: vec![2; n],
-            places: PointCloud::new(width, Vec::new())?,
+            places: self.cloud.cast(),
             offsets: vec![0.0; n],
             radii: vec![0.0; n],
             model: vec![0; n],
@@ -302,32 +321,42 @@ impl<S: Scalar> Analyzer<'_, S> {
         for model in self.models {
             audit::local_dimension(model.as_ref())?;
         }
-        let scratch = || Scratch::reporting(&out.faults);
+        let faults = out.faults.clone();
+        let scratch = || Scratch::reporting(&faults);
         let looked_at = !options.surface || self.models.iter().any(|m| m.finds_boundary());
         if looked_at {
             let found = execute::map(self.execute, n, scratch, |scratch, i| {
-                self.point(i, options, boundary[i], scratch)
+                self.first_look(i, options, boundary[i], scratch)
             });
             let mut total = 0usize;
-            for (i, found) in found.into_iter().enumerate() {
-                let found = found?;
-                total += found.neighbors;
-                out.dimensions[i] = found.dimension;
-                out.candidates += usize::from(found.dimension != 2);
-                out.take(i, found.kind, &mut places, boundary[i]);
-                out.apexes.extend(found.apex);
-            }
-            let again = self.beside_curves(&out, options.eps);
-            let scratch = || Scratch::reporting(&out.faults);
-            let more = execute::map(self.execute, again.len(), scratch, |scratch, k| {
-                self.explain(again[k], 3, options, scratch)
-            });
-            for (&i, (kind, apex)) in again.iter().zip(more) {
-                if !matches!(kind, Kind::Unexplained) {
-                    out.take(i, kind, &mut places, boundary[i]);
-                    out.apexes.extend(apex);
+            let mut asked: Vec<(u8, Asked)> = Vec::new();
+            for (row, found) in found.into_iter().enumerate() {
+                let (neighbors, dimension, verdict) = found?;
+                total += neighbors;
+                out.dimensions[row] = dimension;
+                out.candidates += usize::from(dimension != 2);
+                match verdict {
+                    Some(verdict) => out.take(row, verdict, boundary[row]),
+                    None => asked.push((dimension, Asked { row, neighbors })),
                 }
             }
+            asked.sort_by_key(|a| a.0);
+            for same in asked.chunk_by(|a, b| a.0 == b.0) {
+                let rows = same.iter().map(|a| a.1).collect();
+                for (i, verdict) in self.explain_all(rows, same[0].0.into(), options, true, &faults)
+                {
+                    out.take(i, verdict, boundary[i]);
+                }
+            }
+            let again = self.beside_curves(&out, options.eps);
+            for (i, verdict) in self.explain_all(again, 3, options, false, &faults) {
+                if !verdict.is_unexplained() {
+                    out.take(i, verdict, boundary[i]);
+                }
+            }
+            out.apexes.sort_by_key(|w| w.row);
+            out.witnesses.sort_by_key(|w| w.row);
+            out.unexplained.sort_unstable();
             out.faults.none()?;
             out.mean_neighbors = total as f64 / n.max(1) as f64;
             if out.unexplained.len() as f64 > UNEXPLAINED_SHARE * n as f64 {
@@ -340,35 +369,38 @@ impl<S: Scalar> Analyzer<'_, S> {
                 });
             }
         }
-        out.places = PointCloud::new(width, places)?;
         Ok(out)
     }
 
-    /// Points that passed for 2-dimensional within `eps` of a point on a curve.
+    /// Points that passed for 2-dimensional close to a point on a curve.
     ///
     /// Where sheets cross at a small angle the share of variance that tells a crossing is near the
     /// tolerance, and single points fall below it: a curve that was found on both sides of such a
     /// point is looked for there too.
-    fn beside_curves(&self, analysis: &Analysis, eps: f64) -> Vec<usize> {
+    fn beside_curves(&self, analysis: &Analysis, eps: f64) -> Vec<Asked> {
         let mut near = Vec::new();
-        let mut asked = vec![false; analysis.roles.len()];
-        let mut out = Vec::new();
-        for i in 0..asked.len() {
-            if analysis.roles[i] != Role::Curve || asked[i] {
+        let mut covered = vec![false; analysis.roles.len()];
+        let mut beside = vec![false; analysis.roles.len()];
+        for i in 0..covered.len() {
+            if analysis.roles[i] != Role::Curve || covered[i] {
                 continue;
             }
-            self.oracle.within(i, S::of(eps), &mut near);
-            for x in &near {
-                if analysis.roles[x.index] == Role::Curve {
-                    asked[x.index] |= x.distance.as_f64() < 0.25 * eps;
-                } else if analysis.dimensions[x.index] == 2 {
-                    out.push(x.index);
+            self.oracle
+                .indices_within(i, S::of(BESIDE * eps), &mut near);
+            for &x in &near {
+                let x = x as usize;
+                if analysis.roles[x] == Role::Curve {
+                    let square = squared_distance(self.cloud.point(i), self.cloud.point(x));
+                    covered[x] |= square < (0.25 * eps).powi(2);
+                } else if analysis.dimensions[x] == 2 {
+                    beside[x] = true;
                 }
             }
         }
-        out.sort_unstable();
-        out.dedup();
-        out
+        (0..beside.len())
+            .filter(|&row| beside[row])
+            .map(|row| Asked { row, neighbors: 0 })
+            .collect()
     }
 
     /// Number of points in the neighborhood of `i` and its dimension.
@@ -420,13 +452,15 @@ impl<S: Scalar> Analyzer<'_, S> {
         Ok((neighbors, dimension.min(255) as u8))
     }
 
-    fn point(
+    /// Number of points in a neighborhood, its dimension, and what the point is where that takes no fit
+    /// in competition with one sheet.
+    fn first_look(
         &self,
         i: usize,
         options: &AnalysisOptions,
         boundary: bool,
         scratch: &mut Scratch<S>,
-    ) -> Result<Found, Error> {
+    ) -> Result<(usize, u8, Option<Verdict>), Error> {
         let (neighbors, dimension) = if options.surface {
             // Taken on trust: only a boundary is looked for.
             (0, 2)
@@ -437,18 +471,13 @@ impl<S: Scalar> Analyzer<'_, S> {
             .models
             .iter()
             .any(|m| m.applies_to(dimension.into()) && !(boundary && m.finds_boundary()));
-        let (kind, apex) = match dimension {
-            2 if !asked => (Kind::Regular, None),
-            2 => self.second_thought(i, options, boundary, scratch),
-            _ if !asked => (Kind::Unexplained, None),
-            _ => self.explain(i, dimension.into(), options, scratch),
+        let verdict = match dimension {
+            2 if !asked => Some(Verdict::REGULAR),
+            2 => Some(self.second_thought(i, options, boundary, scratch)),
+            _ if !asked => Some(Verdict::UNEXPLAINED),
+            _ => None,
         };
-        Ok(Found {
-            dimension,
-            neighbors,
-            kind,
-            apex,
-        })
+        Ok((neighbors, dimension, verdict))
     }
 
     /// What models say that ask for 2-dimensional neighborhoods.
@@ -458,10 +487,10 @@ impl<S: Scalar> Analyzer<'_, S> {
         options: &AnalysisOptions,
         boundary: bool,
         scratch: &mut Scratch<S>,
-    ) -> (Kind, Option<Witness>) {
+    ) -> Verdict {
         let eps = options.eps;
         let Some(view) = self.view(i, eps, eps, scratch) else {
-            return (Kind::Regular, None);
+            return Verdict::REGULAR;
         };
         let mut best: Option<(f64, usize, Decomposition)> = None;
         for (m, model) in self.models.iter().enumerate() {
@@ -483,26 +512,37 @@ impl<S: Scalar> Analyzer<'_, S> {
                 }
             }
         }
-        best.map_or((Kind::Regular, None), |(_, m, fit)| {
-            self.verdict(i, m, &fit, &view, scratch)
+        best.map_or(Verdict::REGULAR, |(_, m, fit)| {
+            let local = self.local(&view, self.models[m].as_ref(), scratch);
+            let located = fit.located(view.center);
+            self.verdict(i, m, &fit, &view, local.point(view.center), located)
         })
     }
 
     /// Lets the models compete, at smaller and smaller radii: a radius at which the sheets
     /// bend too much for any model is too large there, whatever it is elsewhere.
-    fn explain(
+    ///
+    /// The fit speaks for the rows `others` as well, where they are close enough: `None` for those that
+    /// it says nothing about.
+    pub(super) fn explain(
         &self,
         i: usize,
+        others: &[usize],
         dimension: usize,
         options: &AnalysisOptions,
         scratch: &mut Scratch<S>,
-    ) -> (Kind, Option<Witness>) {
+    ) -> (Verdict, Vec<Option<Verdict>>) {
         let mut radius = options.eps;
         let mut dimension = dimension;
         for shrunk in 0..=SHRINKS {
             let Some(view) = self.view(i, radius, radius, scratch) else {
                 break;
             };
+            scratch.near.truncate(view.fitted);
+            scratch.near.extend(others.iter().map(|&index| Neighbor {
+                index,
+                distance: S::zero(),
+            }));
             if shrunk > 0 {
                 // A smaller ball of a crossing may pass for a sheet; models decide.
                 dimension = match view.frame.dimension(options.dt) {
@@ -514,7 +554,8 @@ impl<S: Scalar> Analyzer<'_, S> {
                 Ok(fit) => fit.residual,
                 Err(_) => break,
             };
-            let mut best: Option<(f64, usize, Decomposition)> = None;
+            let rows: Vec<usize> = (view.fitted..scratch.near.len()).collect();
+            let mut best: Option<(f64, usize, Decomposition, Vec<Option<Located>>)> = None;
             for (m, model) in self.models.iter().enumerate() {
                 if !model.applies_to(dimension) || model.finds_boundary() {
                     continue;
@@ -524,7 +565,16 @@ impl<S: Scalar> Analyzer<'_, S> {
                 }
                 let faults = scratch.faults.clone();
                 let local = self.local(&view, model.as_ref(), scratch);
-                let found = model.decompose(&local);
+                // One model alone need not be asked twice.
+                let found = if self.models.len() == 1 {
+                    model.decompose_about(&local, &rows)
+                } else {
+                    model.decompose(&local).map(|fit| (fit, Vec::new()))
+                };
+                let (found, located) = match found {
+                    Ok((fit, located)) => (Ok(fit), located),
+                    Err(rejection) => (Err(rejection), Vec::new()),
+                };
                 let Some(fit) = audit::sound(found, &local, model.as_ref(), i, &faults) else {
                     continue;
                 };
@@ -532,47 +582,76 @@ impl<S: Scalar> Analyzer<'_, S> {
                 // A line is as near to a sheet as to itself.
                 let better = dimension < 3 || fit.residual < GAIN * plain;
                 if better && best.as_ref().is_none_or(|b| score < b.0) {
-                    best = Some((score, m, fit));
+                    best = Some((score, m, fit, located));
                 }
             }
-            if let Some((_, m, fit)) = best {
-                return self.verdict(i, m, &fit, &view, scratch);
+            let close = |row: usize| {
+                let square = squared_distance(self.cloud.point(i), self.cloud.point(row));
+                square < (SPEAKS_FOR * radius).powi(2)
+            };
+            if let Some((_, m, fit, located)) = best {
+                let model = self.models[m].as_ref();
+                let local = self.local(&view, model, scratch);
+                let located = if located.len() == rows.len() {
+                    located
+                } else {
+                    match model.decompose_about(&local, &rows) {
+                        Ok((_, located)) => located,
+                        Err(_) => vec![None; rows.len()],
+                    }
+                };
+                let own = fit.located(view.center);
+                let own = self.verdict(i, m, &fit, &view, local.point(view.center), own);
+                let kinds = located
+                    .into_iter()
+                    .zip(others)
+                    .zip(&rows)
+                    .map(|((found, &row), &k)| {
+                        let found = found.filter(|_| close(row))?;
+                        Some(self.verdict(row, m, &fit, &view, local.point(k), found))
+                    })
+                    .collect();
+                return (own, kinds);
             }
             let curve = dimension == 1 && self.models.iter().any(|m| m.applies_to(1));
             if !curve && plain < FLAT * radius {
-                return (Kind::Regular, None);
+                let kinds = others
+                    .iter()
+                    .map(|&row| close(row).then_some(Verdict::REGULAR))
+                    .collect();
+                return (Verdict::REGULAR, kinds);
             }
             radius *= SHRINK;
-            if scratch.near.len() < 2 * LEAST_NEIGHBORS {
+            if view.within < 2 * LEAST_NEIGHBORS {
                 break;
             }
         }
-        (Kind::Unexplained, None)
+        (Verdict::UNEXPLAINED, Vec::new())
     }
 
-    /// What a fit makes of the center of a neighborhood, and the 0-stratum it shows.
+    /// What a fit makes of a row, which is at `from` in the coordinates of the model, and the
+    /// 0-stratum that it shows near it.
     fn verdict(
         &self,
-        i: usize,
+        row: usize,
         model: usize,
         fit: &Decomposition,
         view: &View,
-        scratch: &mut Scratch<S>,
-    ) -> (Kind, Option<Witness>) {
-        let local = self.local(view, self.models[model].as_ref(), scratch);
-        let center = local.point(view.center);
+        from: &[f64],
+        located: Located,
+    ) -> Verdict {
         let witness = |stratum: OnStratum, to: &[f64], offset: f64, cells: u8| {
-            let shift: Vec<f64> = to.iter().zip(center).map(|(a, b)| a - b).collect();
+            let shift: Vec<f64> = to.iter().zip(from).map(|(a, b)| a - b).collect();
             let place = view
                 .frame
                 .lift_vector(&shift)
                 .iter()
-                .zip(self.cloud.point(i))
+                .zip(self.cloud.point(row))
                 .map(|(d, x)| x.as_f64() + d)
                 .collect();
             Witness {
                 stratum,
-                row: i,
+                row,
                 place,
                 offset,
                 radius: view.radius,
@@ -583,27 +662,23 @@ impl<S: Scalar> Analyzer<'_, S> {
         let apex = fit
             .points
             .iter()
-            .map(|p| (squared_distance(p, center).sqrt(), p))
+            .map(|p| (squared_distance(p, from).sqrt(), p))
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .filter(|&(offset, _)| offset < APEX_REACH * view.radius)
             .map(|(offset, p)| witness(OnStratum::Point, p, offset, 0));
-        let label = fit.labels[view.center];
         let curve = if self.models[model].finds_boundary() {
             OnStratum::Boundary
         } else {
             OnStratum::Curve
         };
-        let moved = |stratum, cells| witness(stratum, &fit.center, fit.center_offset, cells);
-        let kind = match fit.dimension_of(view.center) {
-            0 => Kind::Singular(moved(OnStratum::Point, 0)),
-            1 => Kind::Singular(moved(curve, fit.cells_at(label).unwrap_or(0))),
-            _ if fit.center_offset > WITNESS_REACH * view.radius => Kind::Regular,
-            _ => Kind::Near(moved(
-                curve,
-                fit.cells_at_curve.first().copied().unwrap_or(0),
-            )),
+        let moved = |stratum| witness(stratum, &located.place, located.offset, located.cells);
+        let kind = match located.dimension {
+            0 => Kind::Singular(moved(OnStratum::Point)),
+            1 => Kind::Singular(moved(curve)),
+            _ if located.offset > WITNESS_REACH * view.radius => Kind::Regular,
+            _ => Kind::Near(moved(curve)),
         };
-        (kind, apex)
+        Verdict { kind, apex }
     }
 
     /// The ball of radius `reach` around `i` in the frame of the ball of `radius`.
@@ -639,6 +714,7 @@ impl<S: Scalar> Analyzer<'_, S> {
             frame: PrincipalFrame::of(self.cloud, rows),
             center: scratch.near.iter().position(|x| x.index == i)?,
             fitted,
+            within,
             radius,
         })
     }
@@ -665,19 +741,40 @@ impl<S: Scalar> Analyzer<'_, S> {
         }
     }
 
-    /// The decomposition of the ball of a point on a curve, with the rows it labels.
+    /// The decomposition of the ball of a point on a curve, with the rows it labels and the radius.
     pub(super) fn decomposition(
         &self,
         analysis: &Analysis,
         i: usize,
         scratch: &mut Scratch<S>,
-    ) -> Option<(Decomposition, Vec<usize>)> {
-        let radius = analysis.radii[i];
-        let model = self.models[analysis.model[i] as usize].as_ref();
-        let view = self.view(i, radius, LABEL_MARGIN * radius, scratch)?;
-        let local = self.local(&view, model, scratch);
-        let fit = audit::sound(model.decompose(&local), &local, model, i, &analysis.faults)?;
-        Some((fit, scratch.near.iter().map(|x| x.index).collect()))
+    ) -> Option<(Decomposition, Vec<usize>, f64)> {
+        let mut radius = analysis.radii[i];
+        let known = analysis.model[i] as usize;
+        for _ in 0..=SHRINKS {
+            let view = self.view(i, radius, LABEL_MARGIN * radius, scratch)?;
+            let mut fit_by = |model: &dyn SingularityModel| {
+                let local = self.local(&view, model, scratch);
+                let found = model.decompose(&local);
+                audit::sound(found, &local, model, i, &analysis.faults)
+            };
+            let mut best = fit_by(self.models[known].as_ref());
+            if best.is_none() {
+                let others = self
+                    .models
+                    .iter()
+                    .filter(|m| m.applies_to(3) && !m.finds_boundary());
+                best = others
+                    .filter_map(|m| fit_by(m.as_ref()))
+                    .min_by(|a, b| score(a, radius).total_cmp(&score(b, radius)));
+            }
+            if let Some(fit) = best {
+                let rows = scratch.near.iter().map(|x| x.index).collect();
+                return Some((fit, rows, radius));
+            }
+            // The fit of a neighbor may have spoken for this point; its own ball can hold more.
+            radius *= SHRINK;
+        }
+        None
     }
 }
 
@@ -686,6 +783,8 @@ struct View {
     frame: PrincipalFrame,
     center: usize,
     fitted: usize,
+    /// Points in the ball.
+    within: usize,
     radius: f64,
 }
 

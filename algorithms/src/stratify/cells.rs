@@ -1,6 +1,7 @@
 //! Cells: what a flood over the dense points reaches without crossing a curve.
 
 use super::analysis::{Analysis, Analyzer, Role, Scratch};
+use super::balls::BallTree;
 use crate::execute;
 use crosscap_core::{Decomposition, Scalar, squared_distance};
 
@@ -10,6 +11,8 @@ pub(super) struct Reference {
     pub(super) row: usize,
     /// Rows in its ball with their labels, by row.
     labels: Vec<(u32, u8)>,
+    /// Radius of the fit.
+    pub(super) radius: f64,
     /// The strata, without the labels.
     pub(super) fit: Decomposition,
 }
@@ -63,7 +66,7 @@ pub(super) fn references<S: Scalar>(
         rows.len(),
         Scratch::default,
         |scratch, k| {
-            let (mut fit, near) = analyzer.decomposition(analysis, rows[k], scratch)?;
+            let (mut fit, near, radius) = analyzer.decomposition(analysis, rows[k], scratch)?;
             let mut labels: Vec<(u32, u8)> = near
                 .iter()
                 .map(|&r| r as u32)
@@ -73,6 +76,7 @@ pub(super) fn references<S: Scalar>(
             Some(Reference {
                 row: rows[k],
                 labels,
+                radius,
                 fit,
             })
         },
@@ -82,8 +86,68 @@ pub(super) fn references<S: Scalar>(
     .collect()
 }
 
-/// The graph on the regular points, cut along the curves.
+/// Where floods run: some of the points, and a margin about them.
+pub(super) struct Region {
+    /// Rows of the region and the margin, in order.
+    rows: Vec<u32>,
+    /// Whether a row of `rows` is in the region.
+    inside: Vec<bool>,
+    /// Every row this close to one of the region is in `rows`.
+    margin: f64,
+}
+
+impl Region {
+    /// The points within `radius` of the given rows.
+    pub(super) fn about<S: Scalar>(
+        analyzer: &Analyzer<'_, S>,
+        analysis: &Analysis,
+        centers: &[usize],
+        radius: f64,
+        margin: f64,
+    ) -> Self {
+        let found = execute::map_blocks(
+            analyzer.execute,
+            CENTERS_AT_ONCE,
+            centers.len(),
+            Vec::new,
+            |near, c| {
+                let row = centers[c];
+                // The oracle knows the points where they were before they were moved.
+                let reach = radius + margin + analysis.offsets[row];
+                analyzer.oracle.indices_within(row, S::of(reach), near);
+                let origin = analysis.places.point(row);
+                near.iter()
+                    .map(|&x| {
+                        let place = analysis.places.point(x as usize);
+                        (x, squared_distance(origin, place) < radius * radius)
+                    })
+                    .collect::<Vec<(u32, bool)>>()
+            },
+        );
+        let mut state = vec![0u8; analysis.roles.len()];
+        for (row, inner) in found.into_iter().flatten() {
+            state[row as usize] |= 1 + u8::from(inner);
+        }
+        let rows: Vec<u32> = (0..state.len() as u32)
+            .filter(|&row| state[row as usize] > 0)
+            .collect();
+        Self {
+            inside: rows.iter().map(|&row| state[row as usize] > 1).collect(),
+            rows,
+            margin,
+        }
+    }
+}
+
+/// Centers whose surroundings are looked up together.
+const CENTERS_AT_ONCE: usize = 16;
+
+/// The graph on the regular points of a region, cut along the curves.
 pub(super) struct CellGraph {
+    /// Node of every row, `NONE` outside of the region.
+    node_of: Vec<u32>,
+    /// Row of every node.
+    rows: Vec<u32>,
     starts: Vec<usize>,
     targets: Vec<u32>,
     /// Edges cut.
@@ -91,20 +155,21 @@ pub(super) struct CellGraph {
 }
 
 impl CellGraph {
-    /// Union of the 12 nearest neighbors of every point, curve points counted among them and
-    /// then removed; an edge is cut when its ends carry different labels in the fit of the
-    /// reference that is nearest to either.
+    /// Union of the 12 nearest neighbors of every point of the region, curve points counted among
+    /// them and then removed; an edge is cut when its ends carry different labels in the fit of
+    /// the reference that is nearest to either.
     pub(super) fn new<S: Scalar>(
         analyzer: &Analyzer<'_, S>,
         analysis: &Analysis,
         references: &[Reference],
+        region: &Region,
     ) -> Self {
         let n = analysis.roles.len();
         let places = &analysis.places;
         let mut nearest = vec![NONE; n];
         let mut closest = vec![f64::INFINITY; n];
         for (k, reference) in references.iter().enumerate() {
-            let reach = (LABEL_REACH * analysis.radii[reference.row]).powi(2);
+            let reach = (LABEL_REACH * reference.radius).powi(2);
             let origin = places.point(reference.row);
             for &(row, _) in &reference.labels {
                 let row = row as usize;
@@ -115,47 +180,126 @@ impl CellGraph {
                 }
             }
         }
-        let rows = execute::map(analyzer.execute, n, Vec::new, |near, i| {
-            if analysis.roles[i] != Role::Regular {
-                return Vec::new();
+        let regular = |row: u32| analysis.roles[row as usize] == Role::Regular;
+        let mut node_of = vec![NONE; n];
+        let mut rows = Vec::new();
+        for (&row, &inside) in region.rows.iter().zip(&region.inside) {
+            if inside && regular(row) {
+                node_of[row as usize] = rows.len() as u32;
+                rows.push(row);
             }
-            analyzer.oracle.nearest(i, GRAPH_NEIGHBORS + 1, near);
-            near.iter()
-                .map(|x| x.index)
-                .filter(|&j| j != i && analysis.roles[j] == Role::Regular)
-                .collect::<Vec<usize>>()
-        });
-        let mut edges: Vec<(u32, u32)> = Vec::with_capacity(n * GRAPH_NEIGHBORS * 2);
+        }
+        let width = analyzer.cloud.dimension();
+        let mut coordinates = Vec::with_capacity(region.rows.len() * width);
+        for &row in &region.rows {
+            coordinates.extend(
+                analyzer
+                    .cloud
+                    .point(row as usize)
+                    .iter()
+                    .map(|x| x.as_f64()),
+            );
+        }
+        let tree = BallTree::new(width, &coordinates);
+        drop(coordinates);
+        let is_node = |k: u32| node_of[region.rows[k as usize] as usize] != NONE;
+        let mut lists = tree.nearest_of_each(GRAPH_NEIGHBORS, is_node, analyzer.execute);
+        drop(tree);
+        // Where neighbors are farther than the margin there may be nearer ones beyond it.
+        let mut near = Vec::new();
+        for list in &mut lists {
+            let last = list.near.last().map_or(f64::INFINITY, |x| x.0);
+            let full = list.near.len() == GRAPH_NEIGHBORS;
+            let row = region.rows[list.index as usize];
+            list.index = row;
+            if full && last <= region.margin * region.margin {
+                for x in &mut list.near {
+                    x.1 = region.rows[x.1 as usize];
+                }
+            } else {
+                analyzer
+                    .oracle
+                    .nearest(row as usize, GRAPH_NEIGHBORS + 1, &mut near);
+                list.near.clear();
+                list.near.extend(
+                    near.iter()
+                        .filter(|x| x.index != row as usize)
+                        .map(|x| (x.distance.as_f64(), x.index as u32)),
+                );
+            }
+        }
         let mut cut = 0;
-        for (i, row) in rows.iter().enumerate() {
-            for &j in row {
-                if separated(i, j, references, &nearest, &closest) {
+        let mut edges: Vec<(u32, u32)> = Vec::with_capacity(lists.len() * GRAPH_NEIGHBORS * 2);
+        for list in &lists {
+            let a = node_of[list.index as usize];
+            for &(_, row) in &list.near {
+                let b = node_of[row as usize];
+                if b == NONE {
+                    continue;
+                }
+                if separated(
+                    list.index as usize,
+                    row as usize,
+                    references,
+                    &nearest,
+                    &closest,
+                ) {
                     cut += 1;
                 } else {
-                    edges.push((i as u32, j as u32));
-                    edges.push((j as u32, i as u32));
+                    edges.push((a, b));
+                    edges.push((b, a));
                 }
             }
         }
-        edges.sort_unstable();
-        edges.dedup();
-        let mut starts = vec![0usize; n + 1];
-        for &(a, _) in &edges {
-            starts[a as usize + 1] += 1;
-        }
-        for i in 0..n {
-            starts[i + 1] += starts[i];
-        }
+        drop(lists);
+        let (starts, targets) = compressed(rows.len(), &edges);
         Self {
+            node_of,
+            rows,
             starts,
-            targets: edges.into_iter().map(|(_, b)| b).collect(),
+            targets,
             cut,
         }
     }
 
-    fn around(&self, i: usize) -> &[u32] {
-        &self.targets[self.starts[i]..self.starts[i + 1]]
+    fn around(&self, node: usize) -> &[u32] {
+        &self.targets[self.starts[node]..self.starts[node + 1]]
     }
+}
+
+/// The targets of directed edges by source, each once, with where those of a source start.
+fn compressed(count: usize, edges: &[(u32, u32)]) -> (Vec<usize>, Vec<u32>) {
+    let mut starts = vec![0usize; count + 1];
+    for &(a, _) in edges {
+        starts[a as usize + 1] += 1;
+    }
+    for k in 0..count {
+        starts[k + 1] += starts[k];
+    }
+    let mut next = starts.clone();
+    let mut all = vec![0u32; edges.len()];
+    for &(a, b) in edges {
+        all[next[a as usize]] = b;
+        next[a as usize] += 1;
+    }
+    let mut kept = 0;
+    let mut from = 0;
+    for k in 0..count {
+        let until = starts[k + 1];
+        all[from..until].sort_unstable();
+        starts[k] = kept;
+        for at in from..until {
+            if at == from || all[at] != all[at - 1] {
+                all[kept] = all[at];
+                kept += 1;
+            }
+        }
+        from = until;
+    }
+    starts[count] = kept;
+    all.truncate(kept);
+    all.shrink_to_fit();
+    (starts, all)
 }
 
 /// Whether the labels put `i` and `j` into different strata, or onto the curve itself.
@@ -183,47 +327,45 @@ fn separated(
 }
 
 /// A flood with its memory of what was reached, reusable.
+#[derive(Default)]
 pub(super) struct Flood {
     stamp: Vec<u32>,
     round: u32,
+    nodes: Vec<u32>,
     /// Rows reached, in the order of the flood.
     pub(super) reached: Vec<u32>,
 }
 
 impl Flood {
-    pub(super) fn new(n: usize) -> Self {
-        Self {
-            stamp: vec![0; n],
-            round: 0,
-            reached: Vec::new(),
+    /// Everything that paths from the rows `from` reach without leaving the rows that are `inside`.
+    pub(super) fn run(&mut self, graph: &CellGraph, from: &[u32], inside: impl Fn(usize) -> bool) {
+        if self.stamp.len() != graph.rows.len() {
+            self.stamp = vec![0; graph.rows.len()];
+            self.round = 0;
         }
-    }
-
-    /// Everything that paths from `from` reach without leaving the ball of `radius` about `origin`.
-    pub(super) fn run(
-        &mut self,
-        graph: &CellGraph,
-        from: impl Iterator<Item = u32>,
-        inside: impl Fn(usize) -> bool,
-    ) {
         self.round += 1;
-        self.reached.clear();
-        for i in from {
-            if self.stamp[i as usize] != self.round && inside(i as usize) {
-                self.stamp[i as usize] = self.round;
-                self.reached.push(i);
+        self.nodes.clear();
+        for &row in from {
+            let node = graph.node_of[row as usize];
+            if node != NONE && self.stamp[node as usize] != self.round && inside(row as usize) {
+                self.stamp[node as usize] = self.round;
+                self.nodes.push(node);
             }
         }
         let mut at = 0;
-        while at < self.reached.len() {
-            let i = self.reached[at] as usize;
-            at += 1;
-            for &j in graph.around(i) {
-                if self.stamp[j as usize] != self.round && inside(j as usize) {
-                    self.stamp[j as usize] = self.round;
-                    self.reached.push(j);
+        while at < self.nodes.len() {
+            for &other in graph.around(self.nodes[at] as usize) {
+                if self.stamp[other as usize] != self.round {
+                    self.stamp[other as usize] = self.round;
+                    if inside(graph.rows[other as usize] as usize) {
+                        self.nodes.push(other);
+                    }
                 }
             }
+            at += 1;
         }
+        self.reached.clear();
+        self.reached
+            .extend(self.nodes.iter().map(|&node| graph.rows[node as usize]));
     }
 }

@@ -88,7 +88,7 @@ impl Curves {
                 .enumerate()
                 .filter_map(|(k, r)| Some((distance(r.row, row), k, r.label(row)?)))
                 .min_by(|a, b| a.0.total_cmp(&b.0))
-                .filter(|&(d, k, _)| d < analysis.radii[self.corner_references[k].row])
+                .filter(|&(d, k, _)| d < self.corner_references[k].radius)
                 .map(|(_, k, l)| (k, l))
         };
         // Next to a corner the points of a boundary are in the band of both sheets: which

@@ -1,9 +1,12 @@
 //! From points to the narrow waist: which stratum every point is in, landmarks, chains, cells.
 
 mod analysis;
+mod balls;
 mod cells;
 mod chains;
+mod net;
 mod paper;
+mod plain;
 mod waist;
 
 pub use analysis::{Analysis, AnalysisOptions, Analyzer, Dimensions, Role};

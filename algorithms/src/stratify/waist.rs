@@ -1,9 +1,11 @@
 //! Landmarks, cells and distances put together.
 
 use super::analysis::{Analysis, Analyzer, Role};
-use super::cells::{CellGraph, Flood, Reference, references};
+use super::cells::{CellGraph, Flood, Reference, Region, references};
 use super::chains::{Curves, NODE_SPACING, more_references};
+use super::plain::Surroundings;
 use crate::audit;
+use crate::execute;
 use crosscap_core::{
     CellNeighborhood, Error, LandmarkSelector, MetricSpace, Scalar, SparseDistances,
     StratifiedLandmarks, squared_distance,
@@ -76,6 +78,17 @@ const WIDENINGS: usize = 2;
 /// A cell whose points begin farther than this many dl from a curve landmark does not touch it.
 const CONTACT_REACH: f64 = 2.0;
 
+/// Every point of a curve has a landmark or a reference within this many dl.
+const CURVE_GAP: f64 = 0.7;
+/// Floods that a job takes at a time.
+const FLOODS_AT_ONCE: usize = 32;
+
+/// A neighborhood to be found: that of a landmark of a cell, or of one cell at a curve landmark.
+struct Job {
+    landmark: usize,
+    group: Option<usize>,
+}
+
 /// Cuts the cloud along its curves and points into cells and describes every landmark's surroundings.
 ///
 /// `metric` gives the distances inside the neighborhoods, any metric on the rows of the input;
@@ -138,8 +151,6 @@ pub fn stratify<S: Scalar>(
             &known,
         ));
     }
-    let graph = CellGraph::new(analyzer, analysis, &refs);
-
     analysis.faults.none()?;
     let mut rows = curves.rows.clone();
     let candidates = free_of_edges(analyzer, analysis, &curves);
@@ -173,89 +184,132 @@ pub fn stratify<S: Scalar>(
     }
 
     let contacts = Contacts::new(analyzer, analysis, &curves, &refs, options.dl);
-    let mut flood = Flood::new(n);
-    let mut hits = vec![0u32; contacts.groups.len()];
-    let mut touched: Vec<u32> = Vec::new();
-    let mut neighborhoods = Vec::with_capacity(rows.len());
-    let starts = (curves.rows.len()..rows.len()).map(|k| (k, None)).chain(
-        contacts
-            .groups
-            .iter()
-            .enumerate()
-            .map(|(g, group)| (group.landmark, Some(g))),
+    let width = places.dimension();
+    let mut landmark_places = Vec::with_capacity(rows.len() * width);
+    for &row in &rows {
+        landmark_places.extend_from_slice(places.point(row));
+    }
+    let mut on_curves = landmark_places[..curves.rows.len() * width].to_vec();
+    for reference in &refs {
+        on_curves.extend_from_slice(places.point(reference.row));
+    }
+    let gap = CURVE_GAP * options.dl;
+    let around = Surroundings::new(width, landmark_places, &on_curves, gap, options.dl);
+    let jobs: Vec<Job> = (curves.rows.len()..rows.len())
+        .map(|k| Job {
+            landmark: k,
+            group: None,
+        })
+        .chain(contacts.groups.iter().enumerate().map(|(g, group)| Job {
+            landmark: group.landmark,
+            group: Some(g),
+        }))
+        .collect();
+    let mut found: Vec<Option<Vec<u32>>> = execute::map(
+        analyzer.execute,
+        jobs.len(),
+        Default::default,
+        |scratch, j| {
+            let job = &jobs[j];
+            if job.group.is_some() {
+                return None;
+            }
+            let landmark = job.landmark as u32;
+            let mut radius = options.tri_eps;
+            let mut members = around.near(landmark, radius);
+            for _ in 0..WIDENINGS {
+                if members.len() >= LEAST_MEMBERS {
+                    break;
+                }
+                radius *= WIDENING;
+                members = around.near(landmark, radius);
+            }
+            around
+                .is_plain(landmark, radius, &members, scratch)
+                .then_some(members)
+        },
     );
-    for (center, group) in starts {
-        let origin = places.point(rows[center]);
-        let mut members: Vec<u32> = Vec::new();
-        let mut radius = options.tri_eps;
-        for widening in 0..=WIDENINGS {
-            let reach = radius * radius;
-            let inside = |row: usize| squared_distance(origin, places.point(row)) < reach;
-            match group {
-                None => flood.run(&graph, std::iter::once(rows[center] as u32), inside),
-                Some(g) => flood.run(&graph, contacts.groups[g].rows.iter().copied(), inside),
-            }
-            members.clear();
-            touched.clear();
-            for &row in &flood.reached {
-                let k = landmark_at[row as usize];
-                if k != u32::MAX && k as usize != center {
-                    members.push(k);
-                }
-                for &g in contacts.of(row as usize) {
-                    if hits[g as usize] == 0 {
-                        touched.push(g);
-                    }
-                    hits[g as usize] += 1;
-                }
-            }
-            for &g in &touched {
-                let group = &contacts.groups[g as usize];
-                let enough = 2 * hits[g as usize] as usize >= group.rows.len();
-                hits[g as usize] = 0;
-                if enough && group.landmark != center && inside(rows[group.landmark]) {
-                    members.push(group.landmark as u32);
-                }
-            }
+    let mut pending: Vec<usize> = (0..jobs.len()).filter(|&j| found[j].is_none()).collect();
+    let mut radius = options.tri_eps;
+    let mut cut_edges = 0;
+    for widening in 0..=WIDENINGS {
+        if pending.is_empty() {
+            break;
+        }
+        let mut centers: Vec<usize> = pending.iter().map(|&j| rows[jobs[j].landmark]).collect();
+        centers.sort_unstable();
+        centers.dedup();
+        let region = Region::about(analyzer, analysis, &centers, radius, options.dl);
+        let graph = CellGraph::new(analyzer, analysis, &refs, &region);
+        if widening == 0 {
+            cut_edges = graph.cut;
+        }
+        let flooded = execute::map_blocks(
+            analyzer.execute,
+            FLOODS_AT_ONCE,
+            pending.len(),
+            || Hits::new(&contacts),
+            |hits, p| {
+                let job = &jobs[pending[p]];
+                let own = [rows[job.landmark] as u32];
+                let from = job.group.map_or(&own[..], |g| &contacts.groups[g].rows);
+                let origin = places.point(own[0] as usize);
+                let reach = radius * radius;
+                let inside = |row: usize| squared_distance(origin, places.point(row)) < reach;
+                hits.flood.run(&graph, from, inside);
+                hits.members(&contacts, &landmark_at, job.landmark, |k| inside(rows[k]))
+            },
+        );
+        let mut thin = Vec::new();
+        for (&j, members) in pending.iter().zip(flooded) {
             if members.len() >= LEAST_MEMBERS || widening == WIDENINGS {
-                break;
+                found[j] = Some(members);
+            } else {
+                thin.push(j);
             }
-            radius *= WIDENING;
         }
-        members.sort_unstable();
-        members.dedup();
-        let far = |k: u32| squared_distance(origin, places.point(rows[k as usize]));
-        members.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
-        members.insert(0, center as u32);
-        neighborhoods.push(CellNeighborhood {
-            center: center as u32,
-            members,
-        });
+        pending = thin;
+        radius *= WIDENING;
     }
-    let mut pairs: Vec<(u32, u32)> = Vec::new();
-    for near in &neighborhoods {
-        for (i, &a) in near.members.iter().enumerate() {
-            pairs.extend(near.members[..i].iter().map(|&b| (a.min(b), a.max(b))));
-        }
-    }
-    pairs.sort_unstable();
-    pairs.dedup();
-    let mut lengths = Vec::with_capacity(pairs.len());
-    for (a, b) in pairs {
+    let neighborhoods: Vec<CellNeighborhood> = jobs
+        .iter()
+        .zip(found)
+        .map(|(job, members)| {
+            let origin = places.point(rows[job.landmark]);
+            let far = |k: u32| squared_distance(origin, places.point(rows[k as usize]));
+            let mut ranked: Vec<(f64, u32)> = members
+                .unwrap_or_default()
+                .into_iter()
+                .map(|k| (far(k), k))
+                .collect();
+            ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            ranked.dedup();
+            let center = job.landmark as u32;
+            CellNeighborhood {
+                center,
+                members: std::iter::once(center)
+                    .chain(ranked.into_iter().map(|x| x.1))
+                    .collect(),
+            }
+        })
+        .collect();
+    let distances = SparseDistances::within(rows.len(), &neighborhoods, |a, b| {
         let (p, q) = (rows[a as usize], rows[b as usize]);
-        let d = match metric {
-            Some(metric) => audit::distance(metric, p, q)?,
+        match metric {
+            Some(metric) => audit::distance(metric, p, q).unwrap_or_else(|fault| {
+                analysis.faults.add(p, fault);
+                S::zero()
+            }),
             None => S::of(places.squared_distance(p, q).sqrt()),
-        };
-        lengths.push((a, b, d));
-    }
-    let distances = SparseDistances::new(rows.len(), lengths)?;
+        }
+    })?;
+    analysis.faults.none()?;
     let counts = StratifyCounts {
         landmarks: rows.len(),
         curve_landmarks: curves.rows.len(),
         corners: curves.corners,
         curve_edges: curves.edges.len(),
-        cut_edges: graph.cut,
+        cut_edges,
         mean_members: neighborhoods.iter().map(|x| x.members.len()).sum::<usize>() as f64
             / neighborhoods.len().max(1) as f64,
     };
@@ -299,6 +353,58 @@ fn free_of_edges<S: Scalar>(
     (0..analysis.roles.len())
         .filter(|&i| analysis.roles[i] == Role::Regular && !barred[i])
         .collect()
+}
+
+/// A flood, and what of the contacts it reached.
+struct Hits {
+    flood: Flood,
+    counts: Vec<u32>,
+    touched: Vec<u32>,
+}
+
+impl Hits {
+    fn new(contacts: &Contacts) -> Self {
+        Self {
+            flood: Flood::default(),
+            counts: vec![0; contacts.groups.len()],
+            touched: Vec::new(),
+        }
+    }
+
+    /// The landmarks that the flood reached and the curve landmarks at its rim, without `center`.
+    fn members(
+        &mut self,
+        contacts: &Contacts,
+        landmark_at: &[u32],
+        center: usize,
+        inside: impl Fn(usize) -> bool,
+    ) -> Vec<u32> {
+        let mut members = Vec::new();
+        self.touched.clear();
+        for &row in &self.flood.reached {
+            let k = landmark_at[row as usize];
+            if k != u32::MAX && k as usize != center {
+                members.push(k);
+            }
+            for &g in contacts.of(row as usize) {
+                if self.counts[g as usize] == 0 {
+                    self.touched.push(g);
+                }
+                self.counts[g as usize] += 1;
+            }
+        }
+        for &g in &self.touched {
+            let group = &contacts.groups[g as usize];
+            let enough = 2 * self.counts[g as usize] as usize >= group.rows.len();
+            self.counts[g as usize] = 0;
+            if enough && group.landmark != center && inside(group.landmark) {
+                members.push(group.landmark as u32);
+            }
+        }
+        members.sort_unstable();
+        members.dedup();
+        members
+    }
 }
 
 /// One cell at one curve landmark.

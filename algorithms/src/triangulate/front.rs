@@ -92,14 +92,6 @@ pub(super) struct Front<'a, S: Scalar> {
 }
 
 impl<S: Scalar> Front<'_, S> {
-    pub(super) fn distance(&self, a: u32, b: u32) -> f64 {
-        // Neighborhoods keep the distances of all their pairs.
-        self.input
-            .distances
-            .get(a, b)
-            .map_or(f64::INFINITY, Scalar::as_f64)
-    }
-
     /// Makes `position` answer for these members.
     pub(super) fn locate(&mut self, members: &[u32]) {
         self.round += 1;

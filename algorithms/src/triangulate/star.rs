@@ -8,6 +8,8 @@ use robust::{Coord, orient2d};
 /// A neighborhood laid out in the plane with the triangles that are already in it.
 pub(super) struct Patch<'a> {
     members: &'a [u32],
+    /// Distances of the members, row after row.
+    distances: Vec<f64>,
     places: Vec<[f64; 2]>,
     triangles: Vec<ChartTriangle>,
     boxes: Vec<[f64; 4]>,
@@ -54,12 +56,15 @@ impl<'a> Patch<'a> {
         );
         let members: &'a [u32] = kept;
         let k = members.len();
-        let mut distances = vec![0.0; k * k];
-        for i in 0..k {
-            for j in 0..i {
-                let d = front.distance(members[i], members[j]);
-                distances[i * k + j] = d;
-                distances[j * k + i] = d;
+        front.locate(members);
+        // Neighborhoods keep the distances of all their pairs.
+        let mut distances = vec![f64::INFINITY; k * k];
+        for (i, &m) in members.iter().enumerate() {
+            distances[i * k + i] = 0.0;
+            for (other, d) in front.input.distances.row(m) {
+                if let Some(j) = front.position(other) {
+                    distances[i * k + j] = d.as_f64();
+                }
             }
         }
         let chart = front.parts.chart.chart(k, &distances, 2)?;
@@ -68,9 +73,9 @@ impl<'a> Patch<'a> {
             .chunks_exact(2)
             .map(|c| [c[0], c[1]])
             .collect();
-        front.locate(members);
         let mut patch = Self {
             members,
+            distances,
             places,
             triangles: Vec::new(),
             boxes: Vec::new(),
@@ -92,6 +97,11 @@ impl<'a> Patch<'a> {
             }
         }
         Ok(patch)
+    }
+
+    /// Distance of two members.
+    fn distance(&self, a: usize, b: usize) -> f64 {
+        self.distances[a * self.members.len() + b]
     }
 
     fn push(&mut self, at: [usize; 3]) {
@@ -163,7 +173,7 @@ impl<'a> Patch<'a> {
             return (1..self.members.len())
                 .filter(|&x| self.joinable(front, 0, x))
                 .min_by(|&a, &b| {
-                    let d = |x: usize| front.distance(center, self.members[x]);
+                    let d = |x: usize| self.distance(0, x);
                     d(a).total_cmp(&d(b)).then(a.cmp(&b))
                 })
                 .map(|x| (x, None));
@@ -179,8 +189,8 @@ impl<'a> Patch<'a> {
             if closed {
                 continue;
             }
-            let length = front.distance(center, end);
             let x = front.position(end)?;
+            let length = self.distance(0, x);
             if best.is_none_or(|b| length < b.0) {
                 best = Some((length, x, has.first().and_then(|&c| front.position(c))));
             }
@@ -198,7 +208,7 @@ impl<'a> Patch<'a> {
     ) -> Option<usize> {
         let (p, q) = (self.places[0], self.places[x]);
         let taken = beyond.map(|b| turn(p, q, self.places[b]));
-        let edge = front.distance(self.members[0], self.members[x]);
+        let edge = self.distance(0, x);
         let mut candidates: Vec<(f64, usize)> = (1..self.members.len())
             .filter(|&w| w != x)
             .filter_map(|w| {
@@ -206,8 +216,7 @@ impl<'a> Patch<'a> {
                 if side == 0 || taken == Some(side) {
                     return None;
                 }
-                let a = front.distance(self.members[0], self.members[w]);
-                let b = front.distance(self.members[x], self.members[w]);
+                let (a, b) = (self.distance(0, w), self.distance(x, w));
                 let rank = front.parts.rule.rank(edge, a, b);
                 let fits = circumradius(edge, a, b) <= front.parts.largest_circumradius;
                 (rank.is_finite() && fits).then_some((rank, w))

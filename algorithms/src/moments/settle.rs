@@ -1,0 +1,427 @@
+//! Dimension 2 for all balls about the points of a node at once, with proof.
+//!
+//! Every ball about a point of the node holds the nodes that are inside of all of them, and is held by
+//! these and the fringe together. Scatter about the mean grows with the set in the order of symmetric
+//! matrices, so for the scatter B of any of the balls, I of the inner and U of the outer set, and for
+//! any plane V and its orthogonal complement W
+//!
+//! - tr B - l1(B) - l2(B) <= tr_W B <= tr_W U and tr_V B >= tr_V I: what lies outside of two
+//!   dimensions is at most the share tr_W U / (tr_V I + tr_W U);
+//! - tr B - l1(B) >= l2(I) >= m(I), the smaller eigenvalue of I compressed to V, and l1(B) <= l1(U) <=
+//!   tr U - m(U): what lies outside of one dimension is at least the share m(I) / (m(I) + tr U - m(U)).
+//!
+//! The first below the tolerance and the second not: every ball is 2-dimensional, and none of them has
+//! to be summed. Away from curves most nodes of 64 points are settled this way.
+
+use super::packed;
+use super::reach::Reach;
+use crosscap_core::Scalar;
+
+/// Fewest points that a settled ball has.
+const LEAST: usize = 16;
+/// Rounding must not settle anything.
+const MARGIN: f64 = 1e-5;
+/// Displacements by rounding, in units of the radius, from which nothing is settled.
+const NOISE: f64 = 1e-8;
+/// Nodes wider than this, in units of the radius, are not worth a try.
+const WIDEST: f64 = 0.3;
+/// Up to this many coordinates the points of the fringe are looked at one by one.
+const POINTWISE: usize = 3;
+/// Rounds of subspace iteration for the plane, and those from the plane of the node before.
+const COLD_ROUNDS: usize = 6;
+const WARM_ROUNDS: usize = 1;
+
+/// What can be said about the balls of a node together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Settled {
+    /// All are 2-dimensional; so many points are in the ball about the first one.
+    Two(u32),
+    /// Smaller nodes may be settled.
+    Open,
+    /// Some are not 2-dimensional, or nearly so.
+    Hopeless,
+}
+
+/// Moments about the center of the node.
+#[derive(Default)]
+struct Moments {
+    count: f64,
+    sum: Vec<f64>,
+    products: Vec<f64>,
+}
+
+impl Moments {
+    fn reset(&mut self, n: usize) {
+        self.count = 0.0;
+        self.sum.clear();
+        self.sum.resize(n, 0.0);
+        self.products.clear();
+        self.products.resize(packed::length(n), 0.0);
+    }
+}
+
+/// Workspace for one node after the other.
+pub(super) struct Settler<'a, S: Scalar> {
+    reach: &'a Reach<'a, S>,
+    stack: Vec<u32>,
+    fringe: Vec<u32>,
+    /// Points in nodes that are inside of every ball.
+    common_count: u32,
+    offset: Vec<f64>,
+    inner: Moments,
+    outer: Moments,
+    /// Two orthonormal directions, one after the other; empty when there are none yet.
+    plane: Vec<f64>,
+    image: Vec<f64>,
+}
+
+impl<'a, S: Scalar> Settler<'a, S> {
+    pub(super) fn new(reach: &'a Reach<'a, S>) -> Self {
+        Self {
+            reach,
+            stack: Vec::new(),
+            fringe: Vec::new(),
+            common_count: 0,
+            offset: vec![0.0; reach.tree.n],
+            inner: Moments::default(),
+            outer: Moments::default(),
+            plane: Vec::new(),
+            image: Vec::new(),
+        }
+    }
+
+    pub(super) fn reach(&self) -> &'a Reach<'a, S> {
+        self.reach
+    }
+
+    /// Forgets what was kept from the nodes before.
+    pub(super) fn forget(&mut self) {
+        self.plane.clear();
+    }
+
+    /// What can be said about the balls about all points of a node, for the tolerance `dt`.
+    #[inline(always)]
+    pub(super) fn settle(&mut self, node: u32, dt: f64) -> Settled {
+        let tree = self.reach.tree;
+        let n = tree.n;
+        let center = tree.mean(node as usize);
+        let norm = center.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let noise = self.reach.noise(norm);
+        if n < 2 || tree.scatter_width() == 0 || noise > NOISE {
+            return Settled::Hopeless;
+        }
+        if tree.nodes[node as usize].radius * self.reach.inverse > WIDEST {
+            return Settled::Open;
+        }
+        let shell = self.reach.shell(noise);
+        let inner_count = self.gather(node, shell);
+        if inner_count < LEAST {
+            return Settled::Open;
+        }
+        let trace = packed::trace(&self.inner.products, n);
+        let outer_trace = packed::trace(&self.outer.products, n);
+        if !(trace > 0.0 && self.follow(n)) {
+            return Settled::Open;
+        }
+        let flat = self.in_plane(&self.inner.products, n);
+        if trace - flat >= dt * trace {
+            return Settled::Hopeless;
+        }
+        let beside = (outer_trace - self.in_plane(&self.outer.products, n)).max(0.0);
+        let second = self.second(&self.inner.products, n);
+        let first = outer_trace - self.second(&self.outer.products, n);
+        if beside < dt * (1.0 - MARGIN) * (flat + beside)
+            && second >= dt * (1.0 + MARGIN) * (second + first)
+        {
+            Settled::Two(self.common_count + self.fringe_count(node, shell))
+        } else {
+            Settled::Open
+        }
+    }
+
+    /// Sums the moments about the means of the inner and the outer set; returns the count of the inner.
+    #[inline(always)]
+    fn gather(&mut self, node: u32, shell: f64) -> usize {
+        let tree = self.reach.tree;
+        let n = tree.n;
+        let inverse = self.reach.inverse;
+        let center = tree.mean(node as usize);
+        let width = tree.nodes[node as usize].radius * inverse;
+        let (near, far) = (1.0 - shell, 1.0 + shell);
+        self.inner.reset(n);
+        self.fringe.clear();
+        self.stack.clear();
+        self.stack.push(0);
+        let mut inner_count = 0;
+        while let Some(at) = self.stack.pop() {
+            let other = &tree.nodes[at as usize];
+            let mut square = 0.0;
+            for ((o, a), b) in self
+                .offset
+                .iter_mut()
+                .zip(tree.mean(at as usize))
+                .zip(center)
+            {
+                *o = a - b;
+                square += *o * *o;
+            }
+            let gap = square.sqrt() * inverse;
+            let radius = other.radius * inverse;
+            if gap * (1.0 - 1e-9) - width - radius >= far {
+                continue;
+            }
+            if gap + width + radius < near {
+                inner_count += other.count();
+                add(
+                    &mut self.inner,
+                    other.count() as f64,
+                    &self.offset,
+                    tree.scatter(at as usize),
+                );
+            } else if other.is_leaf() {
+                self.fringe.push(at);
+            } else {
+                self.stack.push(other.right);
+                self.stack.push(at + 1);
+            }
+        }
+        self.common_count = inner_count as u32;
+        self.outer.count = self.inner.count;
+        self.outer.sum.clone_from(&self.inner.sum);
+        self.outer.products.clone_from(&self.inner.products);
+        if n <= POINTWISE {
+            let limits = [(near - width) / inverse, (far + width) / inverse];
+            return inner_count + self.gather_points(node, limits);
+        }
+        for &at in &self.fringe {
+            for ((o, a), b) in self
+                .offset
+                .iter_mut()
+                .zip(tree.mean(at as usize))
+                .zip(center)
+            {
+                *o = a - b;
+            }
+            add(
+                &mut self.outer,
+                tree.nodes[at as usize].count() as f64,
+                &self.offset,
+                tree.scatter(at as usize),
+            );
+        }
+        self.center_moments();
+        inner_count
+    }
+
+    /// Adds the points of the fringe one by one: to the inner set those closer to the center of
+    /// the node than the first limit, to the outer set those closer than the second. Returns how many
+    /// are in the inner set.
+    #[inline(always)]
+    fn gather_points(&mut self, node: u32, limits: [f64; 2]) -> usize {
+        let tree = self.reach.tree;
+        let n = tree.n;
+        let center = tree.mean(node as usize);
+        // Relative rounding of a distance is far below this.
+        let near = (limits[0].max(0.0) * (1.0 - 1e-9)).powi(2);
+        let far = (limits[1] * (1.0 + 1e-9)).powi(2);
+        // Count, coordinates and products, as in ten lanes.
+        let mut sums = [[0.0; 10]; 2];
+        let mut middle = [0.0; POINTWISE];
+        middle[..n].copy_from_slice(center);
+        for &at in &self.fringe {
+            let other = &tree.nodes[at as usize];
+            let places = &tree.places[other.start as usize * n..other.end as usize * n];
+            for place in places.chunks_exact(n) {
+                let mut o = [0.0; POINTWISE];
+                for ((o, y), c) in o.iter_mut().zip(place).zip(&middle) {
+                    *o = y - c;
+                }
+                let [x, y, z] = o;
+                let square = x * x + y * y + z * z;
+                if square >= far {
+                    continue;
+                }
+                let row = [1.0, x, y, z, x * x, x * y, x * z, y * y, y * z, z * z];
+                for (s, r) in sums[usize::from(square >= near)].iter_mut().zip(&row) {
+                    *s += r;
+                }
+            }
+        }
+        let [within, between] = sums;
+        let slots: &[usize] = match n {
+            2 => &[4, 5, 7],
+            _ => &[4, 5, 6, 7, 8, 9],
+        };
+        for (moments, extra) in [
+            (&mut self.inner, within),
+            (
+                &mut self.outer,
+                std::array::from_fn(|k| within[k] + between[k]),
+            ),
+        ] {
+            moments.count += extra[0];
+            for (s, x) in moments.sum.iter_mut().zip(&extra[1..4]) {
+                *s += x;
+            }
+            for (p, &slot) in moments.products.iter_mut().zip(slots) {
+                *p += extra[slot];
+            }
+        }
+        self.center_moments();
+        within[0] as usize
+    }
+
+    /// From moments about the center of the node to those about the means.
+    #[inline(always)]
+    fn center_moments(&mut self) {
+        for moments in [&mut self.inner, &mut self.outer] {
+            if moments.count > 0.0 {
+                let weight = -1.0 / moments.count;
+                packed::add_square(&mut moments.products, &moments.sum, weight);
+            }
+        }
+    }
+
+    /// Turns the plane towards the leading directions of the outer scatter.
+    #[inline(always)]
+    fn follow(&mut self, n: usize) -> bool {
+        let rounds = if self.plane.len() == 2 * n {
+            WARM_ROUNDS
+        } else {
+            self.plane.clear();
+            // A fixed start that leans on no direction.
+            self.plane
+                .extend((0..2 * n).map(|k| (1.7 * k as f64 + 0.3).cos()));
+            COLD_ROUNDS
+        };
+        for _ in 0..rounds {
+            self.image.clear();
+            self.image.resize(2 * n, 0.0);
+            for (v, out) in self
+                .plane
+                .chunks_exact(n)
+                .zip(self.image.chunks_exact_mut(n))
+            {
+                multiply(&self.outer.products, v, out);
+            }
+            std::mem::swap(&mut self.plane, &mut self.image);
+            let (v, w) = self.plane.split_at_mut(n);
+            if !(unit(v) && {
+                let along: f64 = v.iter().zip(&*w).map(|(a, b)| a * b).sum();
+                w.iter_mut().zip(&*v).for_each(|(b, a)| *b -= along * a);
+                unit(w)
+            }) {
+                self.plane.clear();
+                return false;
+            }
+        }
+        // A nearly parallel pair is not orthogonal to the last bit after one pass.
+        let (v, w) = self.plane.split_at_mut(n);
+        let along: f64 = v.iter().zip(&*w).map(|(a, b)| a * b).sum();
+        w.iter_mut().zip(&*v).for_each(|(b, a)| *b -= along * a);
+        unit(w)
+    }
+
+    /// Trace within the plane.
+    #[inline(always)]
+    fn in_plane(&self, products: &[f64], n: usize) -> f64 {
+        let (v, w) = self.plane.split_at(n);
+        form(products, v, v) + form(products, w, w)
+    }
+
+    /// The smaller eigenvalue of the compression to the plane.
+    #[inline(always)]
+    fn second(&self, products: &[f64], n: usize) -> f64 {
+        let (v, w) = self.plane.split_at(n);
+        let (a, b, c) = (
+            form(products, v, v),
+            form(products, v, w),
+            form(products, w, w),
+        );
+        0.5 * (a + c) - (0.25 * (a - c) * (a - c) + b * b).sqrt()
+    }
+
+    /// How many points of the fringe are in the ball about the first point of the node.
+    fn fringe_count(&self, node: u32, shell: f64) -> u32 {
+        let tree = self.reach.tree;
+        let n = tree.n;
+        let first = tree.nodes[node as usize].start as usize;
+        let place = tree.place(first);
+        let unit = self.reach.unit;
+        let near = (unit * (1.0 - shell)).powi(2);
+        let far = (unit * (1.0 + shell)).powi(2);
+        let mut count = 0;
+        for &at in &self.fringe {
+            let other = &tree.nodes[at as usize];
+            let own = other.start as usize..other.end as usize;
+            let places = &tree.places[own.start * n..own.end * n];
+            for (position, other) in own.zip(places.chunks_exact(n)) {
+                let square: f64 = place
+                    .iter()
+                    .zip(other)
+                    .map(|(a, b)| (a - b) * (a - b))
+                    .sum();
+                let inside = square < near || square < far && self.reach.holds(first, position);
+                count += u32::from(inside);
+            }
+        }
+        count
+    }
+}
+
+#[inline(always)]
+fn add(moments: &mut Moments, count: f64, offset: &[f64], scatter: &[f64]) {
+    moments.count += count;
+    for (s, o) in moments.sum.iter_mut().zip(offset) {
+        *s += count * o;
+    }
+    packed::add_shifted(&mut moments.products, scatter, offset, count, 1.0);
+}
+
+/// `out += matrix v`.
+#[inline(always)]
+fn multiply(matrix: &[f64], v: &[f64], out: &mut [f64]) {
+    let n = v.len();
+    let mut at = 0;
+    for i in 0..n {
+        let row = &matrix[at..at + n - i];
+        let mut sum = row[0] * v[i];
+        for ((p, y), o) in row[1..].iter().zip(&v[i + 1..]).zip(&mut out[i + 1..]) {
+            sum += p * y;
+            *o += p * v[i];
+        }
+        out[i] += sum;
+        at += n - i;
+    }
+}
+
+/// Makes `v` a unit vector, `false` where it is none.
+#[inline(always)]
+fn unit(v: &mut [f64]) -> bool {
+    let square: f64 = v.iter().map(|x| x * x).sum();
+    if !(square > 1e-280 && square < 1e280) {
+        return false;
+    }
+    let inverse = 1.0 / square.sqrt();
+    v.iter_mut().for_each(|x| *x *= inverse);
+    true
+}
+
+/// `v^T matrix w`.
+#[inline(always)]
+fn form(matrix: &[f64], v: &[f64], w: &[f64]) -> f64 {
+    let n = v.len();
+    let mut at = 0;
+    let mut sum = 0.0;
+    for i in 0..n {
+        let row = &matrix[at..at + n - i];
+        let (mut along, mut across) = (row[0] * w[i], 0.0);
+        for ((p, x), y) in row[1..].iter().zip(&v[i + 1..]).zip(&w[i + 1..]) {
+            along += p * y;
+            across += p * x;
+        }
+        sum += v[i] * along + w[i] * across;
+        at += n - i;
+    }
+    sum
+}
