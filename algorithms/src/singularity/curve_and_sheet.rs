@@ -95,15 +95,15 @@ impl Fit {
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
         let whole = Flat::of(points.iter().copied()).ok_or(Rejection::NoRealSolution)?;
-        let flat = points
-            .iter()
-            .map(|x| whole.squared_distance(x))
-            .fold(0.0, f64::max)
-            .sqrt();
-        if flat < ep {
+        // The usual case is decided here: one sheet holds all.
+        let mut single =
+            QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
+        single.fit(points.iter().copied(), local.radius);
+        let off = off_sheet(&single, points, ep);
+        if off.len() < STRAIGHT_POINTS && off_sheet(&single, points, 2.0 * ep).is_empty() {
             return Err(Rejection::SimplerModelFits {
-                residual: flat,
-                simpler: flat,
+                residual: ep,
+                simpler: ep,
             });
         }
         let quadrics =

@@ -4,7 +4,7 @@ use super::patch::{PATCH_POINTS, QuadraticPatch};
 use crosscap_core::{
     Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector4};
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, Vector4};
 
 /// Two planes `n_k . x + c_k = 0` of space with unit normals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -266,6 +266,9 @@ pub struct TwoPlanes {
 
 /// Share of the points that three of the four cells must hold.
 const LEAST_CELL_SHARE: f64 = 0.03;
+/// Points of a sheet spread in two directions: the lesser variance is at least this share of the
+/// greater, or they are a curve, which lies in many planes.
+const LEAST_NARROWNESS: f64 = 0.01;
 /// Greatest share of the points farther than ep from both sheets: more are a third sheet, which
 /// would bend the two that are fitted.
 const MOST_ASTRAY: f64 = 0.03;
@@ -322,7 +325,7 @@ impl TwoPlanes {
                 .refined(points.iter().copied(), self.refinement_rounds)
                 .0;
         }
-        let center = points[local.center];
+        let center = all[local.center];
         let (tangent, origin) = planes.line(&center).ok_or(Rejection::NoRealSolution)?;
         // The plane itself, through the line.
         let mut sheets = planes
@@ -400,6 +403,15 @@ impl TwoPlanes {
                 found: held[stratum],
             });
         }
+        for (own, normal) in planes.normals.iter().enumerate() {
+            let across = normal.cross(&tangent);
+            let own = (0..count)
+                .filter(|&k| labels[k] != 0 && nearer(&distances, k) == own)
+                .map(|k| points[k]);
+            if narrowness(own, &tangent, &across) < LEAST_NARROWNESS {
+                return Err(Rejection::NoRealSolution);
+            }
+        }
         Ok(Sheets {
             ep: self.ep,
             radius: local.radius,
@@ -448,6 +460,24 @@ impl Sheets {
             offset,
         })
     }
+}
+
+/// Variance of points of a plane across their main direction, as a share of that along it.
+fn narrowness(
+    points: impl Iterator<Item = Vector3<f64>>,
+    first: &Vector3<f64>,
+    second: &Vector3<f64>,
+) -> f64 {
+    let (mut count, mut mean, mut square) = (0.0, Vector2::zeros(), Matrix2::zeros());
+    for x in points {
+        let x = Vector2::new(first.dot(&x), second.dot(&x));
+        count += 1.0;
+        mean += x;
+        square += x * x.transpose();
+    }
+    let spread = square / count - (mean / count) * (mean / count).transpose();
+    let [low, high] = spread.symmetric_eigenvalues().into();
+    low.min(high) / low.max(high)
 }
 
 /// Whether the data show a crossing at `place`: some point in the band and points of three
