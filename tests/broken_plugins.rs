@@ -330,7 +330,7 @@ fn estimators() {
     );
     names(
         by(|_| estimate(5000, 5000.0, 1.0)),
-        "rounded: k points",
+        "answer: k points",
         1200,
     );
     // A single point.
