@@ -75,6 +75,16 @@ fn check(
             format!("strata {a} and {b} of {dimensions:?}"),
         );
     }
+    let apexes = dimensions.iter().filter(|&&d| d == 0).count();
+    let placed = |p: &Vec<f64>| p.len() == local.dimension && p.iter().all(|x| x.is_finite());
+    if fit.points.len() != apexes || !fit.points.iter().all(placed) {
+        let law = "points: a place for every stratum of dimension 0";
+        let detail = format!(
+            "{:?} for {apexes} strata, in {} coordinates",
+            fit.points, local.dimension
+        );
+        return broken(plugin, law, point, detail);
+    }
     if !(fit.residual.is_finite() && fit.residual >= 0.0) {
         let law = "the residual is finite and at least 0";
         return broken(plugin, law, point, format!("{}", fit.residual));
