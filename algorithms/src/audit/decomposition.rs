@@ -1,7 +1,7 @@
 //! Decompositions by singularity models.
 
 use super::{Faults, broken};
-use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel};
+use crosscap_core::{Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel};
 
 /// Refuses a model whose coordinates could not be given to it.
 ///
@@ -32,6 +32,29 @@ pub(crate) fn sound(
             None
         }
     }
+}
+
+/// What was found of rows around `point`; what cannot be used is remembered and left out.
+pub(crate) fn placed(
+    found: Vec<Option<Located>>,
+    local: &LocalPoints<'_>,
+    model: &dyn SingularityModel,
+    point: usize,
+    faults: &Faults,
+) -> Vec<Option<Located>> {
+    let sound = |x: &Located| {
+        let place = x.place.len() == local.dimension && x.place.iter().all(|c| c.is_finite());
+        let offset = x.offset >= 0.0 && (x.offset.is_finite() || x.dimension == 2);
+        if place && offset && x.dimension <= 2 {
+            return true;
+        }
+        let law = "decompose_about says of rows what decompose says of the center";
+        if let Err(error) = broken::<()>(model.name(), law, point, format!("{x:?}")) {
+            faults.add(point, error);
+        }
+        false
+    };
+    found.into_iter().map(|x| x.filter(sound)).collect()
 }
 
 fn check(
