@@ -115,5 +115,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         places: [[0.0, 0.0], [2.0, 0.0], [1.0, 1.0]],
     };
     println!("{:?}", Clipping.meeting(&below, &above));
+
+    use crosscap::prelude::*;
+    let sample = SampleSurface::find("torus")?.sample(&Sampling::new(4000, 7))?;
+    let outcome = Pipeline::new(Parameters::new(1.0, 0.4).surface())?
+        .compatibility(Box::new(Clipping))
+        .reconstruct(&sample.points)?;
+    println!(
+        "verified: {}, Betti numbers {:?}",
+        outcome.is_verified(),
+        outcome.homology.betti_rational
+    );
+    assert!(outcome.is_verified());
     Ok(())
 }

@@ -163,5 +163,32 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             found.dimension, found.spectrum
         );
     }
+
+    // A torus on which every hundredth point is a bad measurement. Landmarks are chosen among the others: an estimator
+    // says what a neighborhood is, and leaves the bad points in it.
+    use crosscap::prelude::*;
+    let sample = SampleSurface::find("torus")?.sample(&Sampling::new(6000, 7))?;
+    let good = sample.points;
+    let mut rows = good.coordinates().to_vec();
+    for k in (0..good.len()).step_by(100) {
+        rows[3 * k + k / 100 % 3] += 0.2;
+    }
+    let shaken = PointCloud::new(3, rows)?;
+    for trim in [0.0, 0.1] {
+        let estimator = TrimmedComponents { dt: 0.02, trim };
+        let found = Pipeline::new(Parameters::new(0.5, 0.35))?
+            .estimator(Box::new(estimator))
+            .reconstruct(&shaken);
+        match found {
+            Ok(outcome) => println!(
+                "trim {trim}: {} of {} points are not 2-dimensional, verified: {}, Betti numbers {:?}",
+                outcome.report.candidates,
+                shaken.len(),
+                outcome.is_verified(),
+                outcome.homology.betti_rational
+            ),
+            Err(why) => println!("trim {trim}: {why}"),
+        }
+    }
     Ok(())
 }

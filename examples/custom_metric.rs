@@ -2,8 +2,15 @@
 //!
 //! `cargo run --release --example custom_metric`
 
+use crosscap::algorithms::homology::homology;
+use crosscap::algorithms::landmarks::RandomGreedy;
+use crosscap::algorithms::surfaces::Random;
+use crosscap::{Parameters, Pipeline};
 use crosscap_core::laws::{self, Scan, Settings};
-use crosscap_core::{MetricSpace, NeighborhoodOracle, PointCloud};
+use crosscap_core::{
+    CellNeighborhood, LandmarkSelector, MetricSpace, NeighborhoodOracle, PointCloud,
+    SparseDistances, StratifiedLandmarks,
+};
 
 /// Points of a cube whose opposite faces are one: what leaves it on one side comes back on the other.
 struct PeriodicBox {
@@ -33,6 +40,47 @@ impl MetricSpace for PeriodicBox {
     }
 }
 
+/// A torus without an embedding: points of the unit square, whose opposite sides are one. No
+/// coordinates can stand for its distances, so they go into the waist: landmarks, the
+/// landmarks around each of them, and the distances between these.
+fn flat_torus(
+    count: usize,
+    dl: f64,
+) -> Result<StratifiedLandmarks<f64>, Box<dyn std::error::Error>> {
+    let mut random = Random::new(11);
+    let cloud = PointCloud::new(2, (0..2 * count).map(|_| random.uniform()).collect())?;
+    let metric = PeriodicBox { cloud, side: 1.0 };
+    let oracle = Scan(&metric);
+    let all: Vec<usize> = (0..count).collect();
+    let rows = RandomGreedy::new().select(&oracle, &all, &[], dl, 0)?;
+    let mut place = vec![None; count];
+    for (k, &row) in rows.iter().enumerate() {
+        place[row] = Some(k as u32);
+    }
+    let mut near = Vec::new();
+    let mut neighborhoods = Vec::new();
+    let mut distances = Vec::new();
+    for (center, &row) in rows.iter().enumerate() {
+        oracle.within(row, 3.0 * dl, &mut near);
+        // Sorted by distance, so that the center comes first.
+        let members: Vec<u32> = near.iter().filter_map(|x| place[x.index]).collect();
+        for (k, &a) in members.iter().enumerate() {
+            let with = |&b: &u32| (a, b, metric.distance(rows[a as usize], rows[b as usize]));
+            distances.extend(members[..k].iter().map(with));
+        }
+        neighborhoods.push(CellNeighborhood {
+            center: center as u32,
+            members,
+        });
+    }
+    Ok(StratifiedLandmarks {
+        strata: vec![2; rows.len()],
+        curve_edges: Vec::new(),
+        neighborhoods,
+        distances: SparseDistances::new(rows.len(), distances)?,
+    })
+}
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     laws::metric(&Settings::default(), |cloud| PeriodicBox {
         cloud: cloud.clone(),
@@ -47,5 +95,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for x in near {
         println!("point {} at distance {:.2}", x.index, x.distance);
     }
+
+    let dl = 0.08;
+    let waist = flat_torus(3000, dl)?;
+    let triangulation = Pipeline::new(Parameters::new(3.0 * dl, dl))?.triangulate(&waist)?;
+    let found = homology(&triangulation.complex)?;
+    println!(
+        "{} triangles, {} open stars, Betti numbers {:?}",
+        triangulation.complex.triangles.len(),
+        triangulation.incomplete.len(),
+        found.betti_rational
+    );
+    assert_eq!(found.betti_rational, [1, 2, 1], "a torus");
     Ok(())
 }

@@ -187,5 +187,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ),
         Err(why) => println!("{why:?}"),
     }
+
+    use crosscap::prelude::*;
+    let sample = SampleSurface::find("two_spheres")?.sample(&Sampling::new(9000, 2))?;
+    let model = AlternatingPlanes { dp: 0.05, ep: 0.06 };
+    let outcome = Pipeline::new(Parameters::new(0.35, 0.25))?
+        .models(vec![Box::new(model)])
+        .reconstruct(&sample.points)?;
+    println!(
+        "verified: {}, Betti numbers {:?}",
+        outcome.is_verified(),
+        outcome.homology.betti_rational
+    );
+    println!("{}", outcome.pieces?);
     Ok(())
 }

@@ -13,7 +13,7 @@ use crosscap_algorithms::triangulate::MinimumCircumradius;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::{
     Chart, ChartTriangle, CompatibilityTest, Decomposition, DimensionEstimate, LocalPoints,
-    Meeting, Neighbor, Neighborhood, Rejection, TriangleRule,
+    Located, Meeting, Neighbor, Neighborhood, Rejection, TriangleRule,
 };
 
 const NAME: &str = "the-broken-one";
@@ -330,7 +330,7 @@ fn estimators() {
     );
     names(
         by(|_| estimate(5000, 5000.0, 1.0)),
-        "rounded: k points",
+        "answer: k points",
         1200,
     );
     // A single point.
@@ -437,6 +437,40 @@ fn a_model_without_coordinates() {
         .models(vec![Box::new(Nowhere)])
         .reconstruct(&crossing());
     names(found, "local_dimension", 3000);
+}
+
+#[test]
+fn a_model_that_locates_rows_nowhere() {
+    struct Lost(TwoPlanes);
+    impl SingularityModel for Lost {
+        fn local_dimension(&self) -> usize {
+            3
+        }
+        fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+            self.0.decompose(local)
+        }
+        fn decompose_about(
+            &self,
+            local: &LocalPoints<'_>,
+            rows: &[usize],
+        ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
+            let (fit, mut found) = self.0.decompose_about(local, rows)?;
+            for x in found.iter_mut().flatten() {
+                x.place[2] = f64::NAN;
+            }
+            Ok((fit, found))
+        }
+        fn name(&self) -> &str {
+            NAME
+        }
+    }
+    let parameters = Parameters::new(0.3, 0.15);
+    let planes = TwoPlanes::new(parameters.dp, parameters.ep).unwrap();
+    let found = Pipeline::new(parameters)
+        .unwrap()
+        .models(vec![Box::new(Lost(planes))])
+        .reconstruct(&crossing());
+    names(found, "decompose_about", 3000);
 }
 
 // Charts

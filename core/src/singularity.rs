@@ -131,7 +131,10 @@ pub trait SingularityModel: Sync {
                     center: row,
                     ..*local
                 };
-                self.decompose(&own).ok().map(|fit| fit.located(row))
+                let fit = self.decompose(&own).ok()?;
+                // Not every model keeps its labels in range.
+                let label = usize::from(*fit.labels.get(row)?);
+                (label < fit.strata.len()).then(|| fit.located(row))
             })
             .collect();
         Ok((fit, located))

@@ -1,7 +1,7 @@
 //! Decompositions by singularity models.
 
 use super::{Faults, broken};
-use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel};
+use crosscap_core::{Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel};
 
 /// Refuses a model whose coordinates could not be given to it.
 ///
@@ -32,6 +32,29 @@ pub(crate) fn sound(
             None
         }
     }
+}
+
+/// What was found of rows around `point`; what cannot be used is remembered and left out.
+pub(crate) fn placed(
+    found: Vec<Option<Located>>,
+    local: &LocalPoints<'_>,
+    model: &dyn SingularityModel,
+    point: usize,
+    faults: &Faults,
+) -> Vec<Option<Located>> {
+    let sound = |x: &Located| {
+        let place = x.place.len() == local.dimension && x.place.iter().all(|c| c.is_finite());
+        let offset = x.offset >= 0.0 && (x.offset.is_finite() || x.dimension == 2);
+        if place && offset && x.dimension <= 2 {
+            return true;
+        }
+        let law = "decompose_about says of rows what decompose says of the center";
+        if let Err(error) = broken::<()>(model.name(), law, point, format!("{x:?}")) {
+            faults.add(point, error);
+        }
+        false
+    };
+    found.into_iter().map(|x| x.filter(sound)).collect()
 }
 
 fn check(
@@ -74,6 +97,16 @@ fn check(
             point,
             format!("strata {a} and {b} of {dimensions:?}"),
         );
+    }
+    let apexes = dimensions.iter().filter(|&&d| d == 0).count();
+    let placed = |p: &Vec<f64>| p.len() == local.dimension && p.iter().all(|x| x.is_finite());
+    if fit.points.len() != apexes || !fit.points.iter().all(placed) {
+        let law = "points: a place for every stratum of dimension 0";
+        let detail = format!(
+            "{:?} for {apexes} strata, in {} coordinates",
+            fit.points, local.dimension
+        );
+        return broken(plugin, law, point, detail);
     }
     if !(fit.residual.is_finite() && fit.residual >= 0.0) {
         let law = "the residual is finite and at least 0";

@@ -48,7 +48,7 @@ pub(crate) fn dimension(
     if dimension >= neighbors.max(1) {
         return broken(
             plugin,
-            "rounded: k points span at most k - 1 dimensions",
+            "answer: k points span at most k - 1 dimensions",
             point,
             format!("dimension {dimension} from {neighbors} points"),
         );

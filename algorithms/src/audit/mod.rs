@@ -26,7 +26,7 @@ mod oracle;
 mod selection;
 mod triangulation;
 
-pub(crate) use decomposition::{local_dimension, sound};
+pub(crate) use decomposition::{local_dimension, placed, sound};
 pub(crate) use distances::{distance, metric};
 pub(crate) use estimate::dimension;
 pub(crate) use faults::Faults;

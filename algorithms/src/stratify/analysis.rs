@@ -591,6 +591,7 @@ impl<S: Scalar> Analyzer<'_, S> {
             };
             if let Some((_, m, fit, located)) = best {
                 let model = self.models[m].as_ref();
+                let faults = scratch.faults.clone();
                 let local = self.local(&view, model, scratch);
                 let located = if located.len() == rows.len() {
                     located
@@ -600,6 +601,7 @@ impl<S: Scalar> Analyzer<'_, S> {
                         Err(_) => vec![None; rows.len()],
                     }
                 };
+                let located = audit::placed(located, &local, model, i, &faults);
                 let own = fit.located(view.center);
                 let own = self.verdict(i, m, &fit, &view, local.point(view.center), own);
                 let kinds = located

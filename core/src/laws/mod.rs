@@ -31,7 +31,7 @@
 //! | [`LandmarkSelector`](crate::LandmarkSelector) | [`selector()`] | the selector |
 //! | [`CompatibilityTest`](crate::CompatibilityTest) | [`compatibility()`] | the test |
 //! | [`TriangleRule`](crate::TriangleRule) | [`rule()`] | the rule |
-//! | whole reconstructions, quantities of complexes | [`reconstruction()`], [`relabelling()`] | a function |
+//! | whole reconstructions, quantities of complexes | [`reconstruction()`], [`topology()`], [`relabelling()`] | a function |
 //! | Betti numbers | [`euler_poincare()`] | a complex and its Betti numbers |
 //!
 //! # What a failure says
@@ -76,7 +76,7 @@ pub use metric::metric;
 pub use motion::{MOST_DIMENSIONS, Motion, motions};
 pub use neighborhood::oracle;
 pub use reference::{Scan, StraightLine};
-pub use result::{euler_poincare, reconstruction, relabelling};
+pub use result::{euler_poincare, reconstruction, relabelling, topology};
 pub use rule::rule;
 pub use settings::Settings;
 pub use singularity::{Instances, model};

@@ -7,6 +7,7 @@ use super::{Law, LawBroken, Settings};
 use crate::{Complex, PointCloud};
 use proptest::prelude::*;
 use std::fmt::Debug;
+use std::ops::RangeInclusive;
 
 const SUBJECT: &str = "a reconstruction";
 
@@ -37,6 +38,24 @@ static EMBEDDING: Law = Law {
     look_for: "the dimension of the space in a formula; a part for R^3 alone that decides differently",
 };
 
+/// Random choices.
+static SEED: Law = Law {
+    subject: SUBJECT,
+    name: "seed",
+    says: "the same Betti numbers whatever the seed of the random choices",
+    look_for: "a mesh that was taken without looking at its certificate; landmarks too far apart for the \
+               bends of the surface, or a sample too thin in places: what a seed meets by chance",
+};
+
+/// Fineness of the mesh.
+static SEPARATION: Law = Law {
+    subject: SUBJECT,
+    name: "separation",
+    says: "the same Betti numbers for every landmark separation of a range",
+    look_for: "a range that reaches beyond what the surface allows: handles and holes narrower than three \
+               separations are lost, and below three spacings of the sample there are holes",
+};
+
 /// Names of the vertices.
 static RELABELLING: Law = Law {
     subject: "a quantity of complexes",
@@ -55,7 +74,15 @@ static EULER_POINCARE: Law = Law {
                ranks computed in floating point or modulo a prime and called rational",
 };
 
-pub(super) static ALL: [&Law; 5] = [&MOTION, &SCALE, &EMBEDDING, &RELABELLING, &EULER_POINCARE];
+pub(super) static ALL: [&Law; 7] = [
+    &MOTION,
+    &SCALE,
+    &EMBEDDING,
+    &SEED,
+    &SEPARATION,
+    &RELABELLING,
+    &EULER_POINCARE,
+];
 
 /// Asks whether Betti numbers can be those of a complex.
 ///
@@ -161,6 +188,46 @@ pub fn reconstruction<E: Debug>(
     })
 }
 
+/// Asks whether the Betti numbers of a surface are those of the surface, and not of the choices made on the
+/// way: `betti` gets a seed and a landmark separation within `separations`, and reconstructs with
+/// all else as it was. A rejection counts as an answer. At most 16 of each are tried.
+///
+/// # Errors
+/// The first law that does not hold.
+///
+/// ```
+/// use crosscap_core::laws::{self, Settings};
+/// // A torus, as long as the mesh is fine enough for its hole.
+/// let betti = |_seed: u64, dl: f64| Ok::<_, ()>(if dl < 0.6 { [1, 2, 1] } else { [1, 0, 1] });
+/// laws::topology(&Settings::default(), 0.2..=0.5, betti).unwrap();
+/// laws::topology(&Settings::default(), 0.2..=2.0, betti).unwrap_err();
+/// ```
+pub fn topology<E: Debug>(
+    settings: &Settings,
+    separations: RangeInclusive<f64>,
+    betti: impl Fn(u64, f64) -> Result<[usize; 3], E>,
+) -> Result<(), LawBroken> {
+    let settings = Settings {
+        shrink_steps: settings.shrink_steps.min(16),
+        ..settings.at_most(16)
+    };
+    let short = |answer: Result<[usize; 3], E>| answer.map_err(|e| format!("{e:?}"));
+    let finest = *separations.start();
+    let expected = short(betti(0, finest));
+    let compare = |seed: u64, separation: f64| {
+        let found = short(betti(seed, separation));
+        ensure!(
+            found == expected,
+            "{found:?}, but {expected:?} with seed 0 and separation {finest}"
+        );
+        Ok(())
+    };
+    SEED.holds(&settings, &any::<u64>(), |&seed| compare(seed, finest))?;
+    SEPARATION.holds(&settings, &separations, |&separation| {
+        compare(0, separation)
+    })
+}
+
 /// Asks whether a quantity of a complex (its homology, a census, a verdict) is the same whatever the
 /// vertices are called.
 ///
@@ -227,6 +294,10 @@ mod tests {
 
     #[test]
     fn an_invariant_reconstruction_passes() {
+        topology(&Settings::default(), 0.1..=0.2, |_, _| {
+            Ok::<_, Error>([1, 2, 1])
+        })
+        .unwrap();
         put(|points, a, b, factor| distance(points, a, b) < 1.6 * factor).unwrap();
     }
 
@@ -240,6 +311,14 @@ mod tests {
             distance(points, a, b) < 0.8 * factor * points.dimension() as f64
         });
         catches(by_space, &EMBEDDING);
+        let lost =
+            |seed: u64, _: f64| Ok::<_, Error>([1 + usize::from(!seed.is_multiple_of(7)), 0, 2]);
+        catches(topology(&Settings::default(), 0.1..=0.2, lost), &SEED);
+        let closed = |_: u64, dl: f64| Ok::<_, Error>([1, usize::from(dl < 0.15), 0]);
+        catches(
+            topology(&Settings::default(), 0.1..=0.2, closed),
+            &SEPARATION,
+        );
         let disc = Complex::new(5, vec![[0, 1, 2], [0, 2, 3], [0, 3, 4]], vec![]).unwrap();
         let at_zero = |c: &Complex, _: &[u32]| c.triangles.iter().filter(|t| t[0] == 0).count();
         catches(

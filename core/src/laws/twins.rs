@@ -43,6 +43,25 @@ fn every_law_is_listed_and_has_a_twin() {
     assert_eq!(names.len(), stated, "two laws of one name");
 }
 
+/// The table of the guide, without the laws of meshes, which are not of this crate.
+#[test]
+fn every_law_is_in_the_guide() {
+    let guide = include_str!("../../../docs/src/laws.md");
+    let (table, _) = guide.split_once("\n## ").unwrap();
+    let mut listed: Vec<(&str, &str)> = table
+        .lines()
+        .filter_map(|line| {
+            let mut cells = line.strip_prefix("| ")?.split(" | ");
+            Some((cells.next()?, cells.next()?))
+        })
+        .filter(|row| !["about", "---", "a mesh"].contains(&row.0))
+        .collect();
+    let mut stated: Vec<(&str, &str)> = super::all().iter().map(|l| (l.subject, l.name)).collect();
+    listed.sort_unstable();
+    stated.sort_unstable();
+    assert_eq!(listed, stated);
+}
+
 #[test]
 fn a_failure_is_found_again() {
     struct Squared(super::StraightLine<f64>);
