@@ -1,8 +1,8 @@
 //! The mathematics of Crosscap: models of the traits of `crosscap-core` that need nobody
 //! else's engine, the triangulator, homology, and the verdict on a mesh.
 
-mod audit;
 pub mod alignment;
+mod audit;
 pub mod certificate;
 pub mod chart;
 pub mod dimension;

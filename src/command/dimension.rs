@@ -11,7 +11,7 @@ use super::terminal::{Progress, complain, say};
 use clap::{Args, ValueEnum};
 use crosscap_algorithms::dimension::{GlobalDimension, Scale, WholeCloud};
 use crosscap_backends::euclidean::EuclideanOracle;
-use crosscap_backends::files::{AnyCloud, read_points, write_bytes_whole};
+use crosscap_backends::files::{AnyCloud, write_bytes_whole};
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{DimensionEstimate, Error, PointCloud, Scalar};
 use serde_json::{Value, json};
@@ -101,7 +101,7 @@ impl Dimension {
             output::check(path, ".csv")?;
             output::distinct(&[&self.points], &[path])?;
         }
-        match read_points(&self.points, &self.choice.options())? {
+        match self.choice.read(&self.points)? {
             AnyCloud::F32(cloud) => self.estimate(&cloud),
             AnyCloud::F64(cloud) => self.estimate(&cloud),
             other => Err(Failure::usage(format!(
