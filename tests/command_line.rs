@@ -611,40 +611,29 @@ fn other_bonds_and_angles_are_another_ring() {
 
 // Molecules
 
-/// Conformations as frames of a molecule with hydrogens, each turned and carried away: `.xyz` and `.pdb`.
-fn trajectories(conformations: &PointCloud<f64>) -> [String; 2] {
-    let (mut xyz, mut pdb) = (String::new(), String::new());
+/// Conformations as frames of a molecule with hydrogens, each turned and carried away.
+fn trajectory(conformations: &PointCloud<f64>) -> String {
+    let mut xyz = String::new();
     let mut random = Random::new(3);
     for (k, p) in conformations.iter().enumerate() {
-        let [a, b, c]: [f64; 3] = [0; 3].map(|_| random.between(-3.0, 3.0));
+        let angles: [f64; 3] = [0; 3].map(|_| random.between(-3.0, 3.0));
         let shift: [f64; 3] = [0; 3].map(|_| random.between(-20.0, 20.0));
-        // Three turns about the axes.
-        let place = |atom: usize, stretch: f64| {
-            let mut q: [f64; 3] = std::array::from_fn(|i| stretch * p[3 * atom + i]);
-            for (axis, angle) in [(2, a), (0, b), (2, c)] {
-                let (s, c) = angle.sin_cos();
-                let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-                (q[i], q[j]) = (c * q[i] - s * q[j], s * q[i] + c * q[j]);
-            }
-            std::array::from_fn::<f64, 3, _>(|i| q[i] + shift[i])
-        };
         xyz += &format!("16\nframe {k}\n");
-        pdb += &format!("MODEL     {:>4}\n", k + 1);
         for atom in 0..8 {
             // A hydrogen outside of each carbon.
             for (element, stretch) in [("C", 1.0), ("H", 1.4)] {
-                let [x, y, z] = place(atom, stretch);
+                let mut q: [f64; 3] = std::array::from_fn(|i| stretch * p[3 * atom + i]);
+                for (axis, angle) in [2, 0, 2].into_iter().zip(angles) {
+                    let (s, c) = angle.sin_cos();
+                    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+                    (q[i], q[j]) = (c * q[i] - s * q[j], s * q[i] + c * q[j]);
+                }
+                let [x, y, z]: [f64; 3] = std::array::from_fn(|i| q[i] + shift[i]);
                 xyz += &format!("{element} {x:.9} {y:.9} {z:.9}\n");
-                pdb += &format!(
-                    "HETATM{:>5} {:<4} RNG A   1    {x:8.3}{y:8.3}{z:8.3}  1.00  0.00          {element:>2}\n",
-                    2 * atom + 1,
-                    format!(" {element}{atom}")
-                );
             }
         }
-        pdb += "ENDMDL\n";
     }
-    [xyz, pdb]
+    xyz
 }
 
 #[test]
@@ -652,8 +641,7 @@ fn a_trajectory_becomes_a_surface() {
     let room = Room::new();
     let ring = crosscap_algorithms::surfaces::RingConformations::new(8, 1.52, 130.0).unwrap();
     let drawn = ring.sample(12_000, 1).unwrap().points;
-    let [xyz, _] = trajectories(&drawn);
-    room.write("ring.xyz", xyz);
+    room.write("ring.xyz", trajectory(&drawn));
     write_points(room.path("first.npy"), &drawn.select(&[0])).unwrap();
     let parameters = "--eps 0.25 --dl 0.14 --dp 0.08 --ep 0.03";
     let said = room
@@ -688,61 +676,6 @@ fn a_trajectory_becomes_a_surface() {
     room.run(check)
         .expect(0)
         .says("all have Betti numbers 1, 0, 0");
-}
-
-#[test]
-fn models_are_aligned_as_frames_are() {
-    let room = Room::new();
-    let ring = crosscap_algorithms::surfaces::RingConformations::new(8, 1.52, 130.0).unwrap();
-    let drawn = ring.sample(400, 2).unwrap().points;
-    let [xyz, pdb] = trajectories(&drawn);
-    room.write("ring.xyz", xyz);
-    room.write("ring.pdb", pdb);
-    // Too few points for a mesh that is good, enough to see which points were taken.
-    let places = |arguments: &str| {
-        room.run(&format!(
-            "reconstruct {arguments} --eps 1 --dl 0.2 --surface --keep-unverified -o out.npz"
-        ));
-        let mesh = read_mesh(room.path("out.npz")).unwrap().mesh;
-        std::fs::remove_file(room.path("out.npz")).unwrap();
-        mesh
-    };
-    let kabsch = places("ring.xyz --atoms heavy --reference frame:7");
-    assert_eq!(kabsch.vertices.dimension(), 24);
-    let models = places("ring.pdb --atoms 1,3,5,7,9,11,13,15 --align kabsch --reference frame:7");
-    for (a, b) in [(&kabsch, &models)] {
-        // Three decimals of a .pdb: the same rows lie within 0.01 of each other.
-        for v in 0..a.complex.vertices.min(b.complex.vertices) {
-            let row = a.point_index[v];
-            if let Some(w) = b.point_index.iter().position(|&r| r == row) {
-                let far = crosscap_core::squared_distance(a.vertices.point(v), b.vertices.point(w));
-                assert!(far.sqrt() < 0.01, "{far}");
-            }
-        }
-    }
-    // With hydrogens the two positions differ: Eckart's weighs carbon twelve times as much.
-    let eckart = places("ring.xyz --align eckart --reference frame:7");
-    let equal = places("ring.xyz --align kabsch --reference frame:7");
-    assert_eq!(eckart.vertices.dimension(), 48);
-    let center = |mesh: &Mesh, weights: [f64; 2]| {
-        let mut sum = 0.0f64;
-        for p in mesh.vertices.iter() {
-            for c in 0..3 {
-                let each = p.iter().skip(c).step_by(3).enumerate();
-                sum = sum.max(
-                    each.map(|(atom, x)| weights[atom % 2] * x)
-                        .sum::<f64>()
-                        .abs(),
-                );
-            }
-        }
-        sum
-    };
-    assert!(center(&eckart, [12.011, 1.008]) < 1e-6);
-    assert!(center(&equal, [1.0, 1.0]) < 1e-6);
-    // As they stand, frames are far apart.
-    let plain = places("ring.xyz --atoms heavy --align none");
-    assert!(center(&plain, [1.0, 1.0]) > 10.0);
 }
 
 #[test]

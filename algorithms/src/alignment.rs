@@ -145,7 +145,7 @@ impl Alignment {
         let size = |p: &[f64]| p.iter().map(|x| x * x).sum::<f64>();
         let weighted = centered.chunks_exact(3).zip(&weights);
         let square: f64 = weighted.map(|(p, w)| w * size(p)).sum();
-        if !(square > 0.0) {
+        if square.is_nan() || square <= 0.0 {
             return Err(AlignmentError::Reference);
         }
         let alignment = alignment(square.sqrt());
@@ -158,7 +158,7 @@ impl Alignment {
             .copied()
             .collect();
         values.sort_by(f64::total_cmp);
-        if !(values[1] > 1e-12) {
+        if values[1].is_nan() || values[1] <= 1e-12 {
             return Err(AlignmentError::Reference);
         }
         Ok(alignment)
@@ -263,7 +263,8 @@ impl Alignment {
             let Aligned { place, margin } = self.align(place);
             let undetermined = AlignmentError::Undetermined { row, margin };
             // Rounding makes NaN of coordinates near the largest number.
-            if !(margin > LEAST_MARGIN) || place.iter().any(|x| !x.is_finite()) {
+            let finite = margin.is_finite() && place.iter().all(|x| x.is_finite());
+            if !finite || margin <= LEAST_MARGIN {
                 return Err(undetermined);
             }
             if margin < least {

@@ -171,3 +171,137 @@ fn masses(atoms: &[Atom], path: &Path) -> Result<Vec<f64>, Failure> {
     };
     atoms.iter().enumerate().map(mass).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+    use crosscap_algorithms::surfaces::{Random, RingConformations};
+    use crosscap_core::PointCloud;
+
+    #[derive(Parser)]
+    struct Only {
+        #[command(flatten)]
+        points: PointArguments,
+    }
+
+    /// The points of a file, with the arguments between white space.
+    fn read(arguments: &str, path: &Path) -> PointCloud<f64> {
+        let words = std::iter::once("read").chain(arguments.split_whitespace());
+        let points = Only::try_parse_from(words).unwrap().points;
+        points.read(path).unwrap().into_f64()
+    }
+
+    /// Conformations with a hydrogen outside of each carbon, every frame turned and carried away: `.xyz` and `.pdb`.
+    fn trajectories(conformations: &PointCloud<f64>) -> [String; 2] {
+        let (mut xyz, mut pdb) = (String::new(), String::new());
+        let mut random = Random::new(3);
+        for (k, p) in conformations.iter().enumerate() {
+            let turn = nalgebra::Vector3::from([0; 3].map(|_| random.between(-2.0, 2.0)));
+            let turn = nalgebra::Rotation3::new(turn);
+            let shift = nalgebra::Vector3::from([0; 3].map(|_| random.between(-20.0, 20.0)));
+            xyz += &format!("16\nframe {k}\n");
+            pdb += &format!("MODEL     {:>4}\n", k + 1);
+            for atom in 0..8 {
+                for (element, stretch) in [("C", 1.0), ("H", 1.4)] {
+                    let place = nalgebra::Vector3::from_column_slice(&p[3 * atom..3 * atom + 3]);
+                    let q = turn * (place * stretch) + shift;
+                    let (x, y, z) = (q.x, q.y, q.z);
+                    xyz += &format!("{element} {x:.9} {y:.9} {z:.9}\n");
+                    pdb += &format!(
+                        "HETATM{:>5}  {element}{atom}  RNG A   1    {x:8.3}{y:8.3}{z:8.3}  1.00  0.00          {element:>2}\n",
+                        2 * atom + 1,
+                    );
+                }
+            }
+            pdb += "ENDMDL\n";
+        }
+        [xyz, pdb]
+    }
+
+    fn farthest(a: &PointCloud<f64>, b: &PointCloud<f64>) -> f64 {
+        assert_eq!((a.len(), a.dimension()), (b.len(), b.dimension()));
+        let each = a.coordinates().iter().zip(b.coordinates());
+        each.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+    }
+
+    /// Largest weighted sum of a coordinate over the atoms.
+    fn off_center(cloud: &PointCloud<f64>, weights: [f64; 2]) -> f64 {
+        let sum = |p: &[f64], c: usize| {
+            let each = p.iter().skip(c).step_by(3).enumerate();
+            each.map(|(atom, x)| weights[atom % 2] * x)
+                .sum::<f64>()
+                .abs()
+        };
+        let all = cloud.iter().flat_map(|p| (0..3).map(move |c| sum(p, c)));
+        all.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn frames_and_models_come_back_aligned() {
+        let ring = RingConformations::new(8, 1.52, 130.0).unwrap();
+        let drawn = ring.sample(300, 2).unwrap().points;
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let [xyz, pdb] = trajectories(&drawn);
+        std::fs::write(at("ring.xyz"), xyz).unwrap();
+        std::fs::write(at("ring.pdb"), pdb).unwrap();
+        let places: Vec<[f64; 3]> = drawn.point(6).as_chunks::<3>().0.to_vec();
+        let known = Alignment::new(&places, &[1.0; 8]).unwrap();
+        let known = known.align_all(&drawn).unwrap().points;
+        // The seventh frame stands turned in its file: what is compared is the shape of the cloud, all distances of
+        // points.
+        let distances = |cloud: &PointCloud<f64>| {
+            let pairs = (0..cloud.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+            let all = pairs
+                .map(|(a, b)| cloud.squared_distance(a, b).sqrt())
+                .collect();
+            PointCloud::new(1, all).unwrap()
+        };
+        let known = distances(&known);
+        for (arguments, name, limit) in [
+            ("--atoms element:C --reference frame:7", "ring.xyz", 1e-6),
+            (
+                "--atoms heavy --align kabsch --reference frame:7",
+                "ring.xyz",
+                1e-6,
+            ),
+            (
+                "--atoms 1,3,5,7,9,11,13,15 --align kabsch --reference frame:7",
+                "ring.pdb",
+                5e-3,
+            ),
+            (
+                "--atoms C0,C1,C2,C3,C4,C5,C6,C7 --align eckart --reference frame:7",
+                "ring.pdb",
+                5e-3,
+            ),
+        ] {
+            let found = read(arguments, &at(name));
+            assert!(farthest(&distances(&found), &known) < limit, "{arguments}");
+            assert!(off_center(&found, [1.0, 1.0]) < 1e-8, "{arguments}");
+        }
+        // A reference from a table, one row an atom, brings all into its own position.
+        let rows: Vec<String> = places
+            .iter()
+            .map(|[x, y, z]| format!("{x},{y},{z}"))
+            .collect();
+        std::fs::write(at("seventh.csv"), rows.join("\n")).unwrap();
+        let reference = format!("--atoms C --reference {}", at("seventh.csv").display());
+        let found = read(&reference, &at("ring.xyz"));
+        let seventh = drawn.select(&[6]);
+        assert!(farthest(&found.select(&[6]), &seventh) < 1e-8);
+        assert!(farthest(&distances(&found), &known) < 1e-6);
+        // Frames of 48 numbers with their hydrogens: the centers of mass and of the atoms differ.
+        let eckart = read("--align eckart", &at("ring.xyz"));
+        let kabsch = read("--align kabsch", &at("ring.xyz"));
+        assert_eq!(eckart.dimension(), 48);
+        assert!(off_center(&eckart, [12.011, 1.008]) < 1e-7);
+        assert!(off_center(&kabsch, [1.0, 1.0]) < 1e-7);
+        assert!(farthest(&eckart, &kabsch) > 1e-4);
+        // As they stand frames are far apart.
+        for plain in ["--atoms heavy", "--atoms heavy --align none"] {
+            assert!(off_center(&read(plain, &at("ring.xyz")), [1.0, 1.0]) > 10.0);
+        }
+    }
+}

@@ -460,7 +460,7 @@ pub(super) fn bare_curves(gluing: &Gluing<'_>, normal: &Normalization) -> Vec<Ba
         let last = vertices.len() - 1;
         let meetings = vertices.iter().enumerate().filter_map(|(k, &vertex)| {
             let pieces = pieces_at(vertex);
-            (!pieces.is_empty()).then(|| CurveMeeting {
+            (!pieces.is_empty()).then_some(CurveMeeting {
                 vertex,
                 pieces,
                 end: !trail.circle && (k == 0 || k == last),

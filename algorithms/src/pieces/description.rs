@@ -209,6 +209,8 @@ impl Pieces {
 
     /// Curves without a surface.
     fn lines(&self) -> Vec<String> {
+        /// Whether it is a circle, and how often it meets which pieces, ending there or not.
+        type Kind<'a> = (bool, Vec<((&'a Vec<u32>, bool), usize)>);
         let kinds = grouped(self.bare_curves.iter().map(|c| {
             let meetings = grouped(c.meetings.iter().map(|m| ((&m.pieces, m.end), ())));
             let counts: Vec<_> = meetings
@@ -217,30 +219,29 @@ impl Pieces {
                 .collect();
             ((c.circle, counts), ())
         }));
-        let say =
-            |((circle, meetings), all): &((bool, Vec<((&Vec<u32>, bool), usize)>), Vec<()>)| {
-                let many = all.len() > 1;
-                let what = match circle {
-                    true => counted(all.len(), "bare circle", "bare circles"),
-                    false => counted(all.len(), "bare arc", "bare arcs"),
-                };
-                if meetings.is_empty() {
-                    return format!("{what} {} apart", if many { "lie" } else { "lies" });
-                }
-                let each = meetings.iter().map(|((pieces, end), count)| {
-                    let labels: Vec<String> = pieces.iter().map(|&p| self.label(p)).collect();
-                    let verb = match (end, many) {
-                        (true, false) => "ends on",
-                        (true, true) => "end on",
-                        (false, false) => "goes through",
-                        (false, true) => "go through",
-                    };
-                    let points = counted(*count, "point", "points");
-                    let each = if many { " each" } else { "" };
-                    format!("{verb} {} in {points}{each}", listed(&labels))
-                });
-                format!("{what} {}", listed(&each.collect::<Vec<_>>()))
+        let say = |((circle, meetings), all): &(Kind<'_>, Vec<()>)| {
+            let many = all.len() > 1;
+            let what = match circle {
+                true => counted(all.len(), "bare circle", "bare circles"),
+                false => counted(all.len(), "bare arc", "bare arcs"),
             };
+            if meetings.is_empty() {
+                return format!("{what} {} apart", if many { "lie" } else { "lies" });
+            }
+            let each = meetings.iter().map(|((pieces, end), count)| {
+                let labels: Vec<String> = pieces.iter().map(|&p| self.label(p)).collect();
+                let verb = match (end, many) {
+                    (true, false) => "ends on",
+                    (true, true) => "end on",
+                    (false, false) => "goes through",
+                    (false, true) => "go through",
+                };
+                let points = counted(*count, "point", "points");
+                let each = if many { " each" } else { "" };
+                format!("{verb} {} in {points}{each}", listed(&labels))
+            });
+            format!("{what} {}", listed(&each.collect::<Vec<_>>()))
+        };
         kinds.iter().map(say).collect()
     }
 

@@ -80,7 +80,8 @@ impl Chart {
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
         // Third smallest singular value against the largest: its zeros are the double curves.
         let largest = eigen.eigenvalues[order[size - 1]];
-        if !(eigen.eigenvalues[order[2]] > 1e-9 * largest) {
+        let third = eigen.eigenvalues[order[2]];
+        if third.is_nan() || third <= 1e-9 * largest {
             return None;
         }
         let column = |v: DVector<f64>| v.as_slice().to_vec();
