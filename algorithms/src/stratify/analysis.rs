@@ -327,16 +327,18 @@ impl<S: Scalar> Analyzer<'_, S> {
         if looked_at {
             let found = execute::map(self.execute, n, scratch, |scratch, i| {
                 self.first_look(i, options, boundary[i], scratch)
+                    .map_err(Box::new)
             });
             let mut total = 0usize;
             let mut asked: Vec<(u8, Asked)> = Vec::new();
             for (row, found) in found.into_iter().enumerate() {
-                let (neighbors, dimension, verdict) = found?;
+                let (neighbors, dimension, verdict) = found.map_err(|error| *error)?;
                 total += neighbors;
                 out.dimensions[row] = dimension;
                 out.candidates += usize::from(dimension != 2);
                 match verdict {
-                    Some(verdict) => out.take(row, verdict, boundary[row]),
+                    Some(verdict) => out.take(row, *verdict, boundary[row]),
+                    None if dimension == 2 => {}
                     None => asked.push((dimension, Asked { row, neighbors })),
                 }
             }
@@ -452,15 +454,15 @@ impl<S: Scalar> Analyzer<'_, S> {
         Ok((neighbors, dimension.min(255) as u8))
     }
 
-    /// Number of points in a neighborhood, its dimension, and what the point is where that takes no fit
-    /// in competition with one sheet.
+    /// Number of points in a neighborhood, its dimension, and what the point is unless it is
+    /// regular, or fits in competition with one sheet must tell.
     fn first_look(
         &self,
         i: usize,
         options: &AnalysisOptions,
         boundary: bool,
         scratch: &mut Scratch<S>,
-    ) -> Result<(usize, u8, Option<Verdict>), Error> {
+    ) -> Result<(usize, u8, Option<Box<Verdict>>), Error> {
         let (neighbors, dimension) = if options.surface {
             // Taken on trust: only a boundary is looked for.
             (0, 2)
@@ -472,12 +474,12 @@ impl<S: Scalar> Analyzer<'_, S> {
             .iter()
             .any(|m| m.applies_to(dimension.into()) && !(boundary && m.finds_boundary()));
         let verdict = match dimension {
-            2 if !asked => Some(Verdict::REGULAR),
-            2 => Some(self.second_thought(i, options, boundary, scratch)),
-            _ if !asked => Some(Verdict::UNEXPLAINED),
-            _ => None,
+            2 if asked => Some(self.second_thought(i, options, boundary, scratch)),
+            2 => None,
+            _ if asked => None,
+            _ => Some(Verdict::UNEXPLAINED),
         };
-        Ok((neighbors, dimension, verdict))
+        Ok((neighbors, dimension, verdict.map(Box::new)))
     }
 
     /// What models say that ask for 2-dimensional neighborhoods.
