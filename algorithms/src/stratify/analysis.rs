@@ -1,5 +1,6 @@
 //! Which stratum every point of the cloud is in.
 
+use super::balls::BallTree;
 use super::net::{Asked, SPEAKS_FOR};
 use crate::audit::{self, Faults};
 use crate::execute::{self, Execute};
@@ -142,15 +143,9 @@ impl Analysis {
     /// Turns witnesses into points on the curve where it has no points within `spacing`: a band
     /// narrower than the spacing of the data leaves gaps in the curve. In the same way points at
     /// 0-strata that none is within `apart` of. Returns how many on curves.
-    pub(super) fn fill_curves(
-        &mut self,
-        spacing: f64,
-        apart: f64,
-        mut near: impl FnMut(usize, f64, &mut Vec<usize>),
-    ) -> usize {
+    pub(super) fn fill_curves(&mut self, spacing: f64, apart: f64) -> usize {
         let mut apexes = std::mem::take(&mut self.apexes);
         apexes.sort_by(|a, b| a.offset.total_cmp(&b.offset).then(a.row.cmp(&b.row)));
-        let mut rows = Vec::new();
         let mut points: Vec<usize> = (0..self.roles.len())
             .filter(|&i| self.roles[i] == Role::Corner)
             .collect();
@@ -167,30 +162,41 @@ impl Analysis {
         }
         let mut witnesses = std::mem::take(&mut self.witnesses);
         witnesses.sort_by(|a, b| a.offset.total_cmp(&b.offset).then(a.row.cmp(&b.row)));
-        let slack = witnesses
-            .last()
-            .map_or(0.0, |w| w.offset)
-            .max(self.offsets.iter().copied().fold(0.0, f64::max));
-        let mut filled = 0;
+        // Witnesses are many, and those that fill anything few.
+        let there: Vec<usize> = (0..self.roles.len())
+            .filter(|&i| self.roles[i] != Role::Regular)
+            .collect();
+        let mut places = Vec::with_capacity(there.len() * self.places.dimension());
+        for &row in &there {
+            places.extend_from_slice(self.places.point(row));
+        }
+        let tree = BallTree::new(self.places.dimension(), &places);
+        let mut added: Vec<usize> = Vec::new();
         for w in witnesses {
-            near(w.row, spacing + w.offset + slack, &mut rows);
+            if self.roles[w.row] != Role::Regular {
+                continue;
+            }
             let own = if w.stratum == OnStratum::Boundary {
                 Role::Boundary
             } else {
                 Role::Curve
             };
-            let covered = rows.iter().any(|&r| {
-                (self.roles[r] == own || self.roles[r] == Role::Corner)
-                    && squared_distance(self.places.point(r), &w.place) < spacing * spacing
+            let counts = |row: usize| self.roles[row] == own || self.roles[row] == Role::Corner;
+            let mut covered = added.iter().any(|&row| {
+                counts(row)
+                    && squared_distance(self.places.point(row), &w.place) < spacing * spacing
             });
-            if covered || self.roles[w.row] != Role::Regular {
+            if !covered {
+                tree.within(&w.place, spacing, |k, _| covered |= counts(there[k as usize]));
+            }
+            if covered {
                 continue;
             }
             self.places.set_point(w.row, &w.place);
             self.enter(&w, false);
-            filled += 1;
+            added.push(w.row);
         }
-        filled
+        added.len()
     }
 }
 

@@ -116,13 +116,8 @@ pub fn stratify<S: Scalar>(
         audit::metric(metric, analyzer.oracle)?;
     }
     let n = analysis.roles.len();
-    let mut near = Vec::new();
     let gap = 2.0 * NODE_SPACING * options.dl;
-    analysis.fill_curves(gap, options.dl, |row, radius, out| {
-        analyzer.oracle.within(row, S::of(radius), &mut near);
-        out.clear();
-        out.extend(near.iter().map(|x| x.index));
-    });
+    analysis.fill_curves(gap, options.dl);
     let analysis = &*analysis;
     let places = &analysis.places;
     let curves = Curves::new(analyzer, analysis, options.dl);
