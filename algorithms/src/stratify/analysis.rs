@@ -1,5 +1,6 @@
 //! Which stratum every point of the cloud is in.
 
+use super::balls::BallTree;
 use super::net::{Asked, SPEAKS_FOR};
 use crate::audit::{self, Faults};
 use crate::execute::{self, Execute};
@@ -142,15 +143,9 @@ impl Analysis {
     /// Turns witnesses into points on the curve where it has no points within `spacing`: a band
     /// narrower than the spacing of the data leaves gaps in the curve. In the same way points at
     /// 0-strata that none is within `apart` of. Returns how many on curves.
-    pub(super) fn fill_curves(
-        &mut self,
-        spacing: f64,
-        apart: f64,
-        mut near: impl FnMut(usize, f64, &mut Vec<usize>),
-    ) -> usize {
+    pub(super) fn fill_curves(&mut self, spacing: f64, apart: f64) -> usize {
         let mut apexes = std::mem::take(&mut self.apexes);
         apexes.sort_by(|a, b| a.offset.total_cmp(&b.offset).then(a.row.cmp(&b.row)));
-        let mut rows = Vec::new();
         let mut points: Vec<usize> = (0..self.roles.len())
             .filter(|&i| self.roles[i] == Role::Corner)
             .collect();
@@ -167,30 +162,41 @@ impl Analysis {
         }
         let mut witnesses = std::mem::take(&mut self.witnesses);
         witnesses.sort_by(|a, b| a.offset.total_cmp(&b.offset).then(a.row.cmp(&b.row)));
-        let slack = witnesses
-            .last()
-            .map_or(0.0, |w| w.offset)
-            .max(self.offsets.iter().copied().fold(0.0, f64::max));
-        let mut filled = 0;
+        // Witnesses are many, and those that fill anything few.
+        let there: Vec<usize> = (0..self.roles.len())
+            .filter(|&i| self.roles[i] != Role::Regular)
+            .collect();
+        let mut places = Vec::with_capacity(there.len() * self.places.dimension());
+        for &row in &there {
+            places.extend_from_slice(self.places.point(row));
+        }
+        let tree = BallTree::new(self.places.dimension(), &places);
+        let mut added: Vec<usize> = Vec::new();
         for w in witnesses {
-            near(w.row, spacing + w.offset + slack, &mut rows);
+            if self.roles[w.row] != Role::Regular {
+                continue;
+            }
             let own = if w.stratum == OnStratum::Boundary {
                 Role::Boundary
             } else {
                 Role::Curve
             };
-            let covered = rows.iter().any(|&r| {
-                (self.roles[r] == own || self.roles[r] == Role::Corner)
-                    && squared_distance(self.places.point(r), &w.place) < spacing * spacing
+            let counts = |row: usize| self.roles[row] == own || self.roles[row] == Role::Corner;
+            let mut covered = added.iter().any(|&row| {
+                counts(row)
+                    && squared_distance(self.places.point(row), &w.place) < spacing * spacing
             });
-            if covered || self.roles[w.row] != Role::Regular {
+            if !covered {
+                tree.within(&w.place, spacing, |k, _| covered |= counts(there[k as usize]));
+            }
+            if covered {
                 continue;
             }
             self.places.set_point(w.row, &w.place);
             self.enter(&w, false);
-            filled += 1;
+            added.push(w.row);
         }
-        filled
+        added.len()
     }
 }
 
@@ -327,16 +333,18 @@ impl<S: Scalar> Analyzer<'_, S> {
         if looked_at {
             let found = execute::map(self.execute, n, scratch, |scratch, i| {
                 self.first_look(i, options, boundary[i], scratch)
+                    .map_err(Box::new)
             });
             let mut total = 0usize;
             let mut asked: Vec<(u8, Asked)> = Vec::new();
             for (row, found) in found.into_iter().enumerate() {
-                let (neighbors, dimension, verdict) = found?;
+                let (neighbors, dimension, verdict) = found.map_err(|error| *error)?;
                 total += neighbors;
                 out.dimensions[row] = dimension;
                 out.candidates += usize::from(dimension != 2);
                 match verdict {
-                    Some(verdict) => out.take(row, verdict, boundary[row]),
+                    Some(verdict) => out.take(row, *verdict, boundary[row]),
+                    None if dimension == 2 => {}
                     None => asked.push((dimension, Asked { row, neighbors })),
                 }
             }
@@ -452,15 +460,15 @@ impl<S: Scalar> Analyzer<'_, S> {
         Ok((neighbors, dimension.min(255) as u8))
     }
 
-    /// Number of points in a neighborhood, its dimension, and what the point is where that takes no fit
-    /// in competition with one sheet.
+    /// Number of points in a neighborhood, its dimension, and what the point is unless it is
+    /// regular, or fits in competition with one sheet must tell.
     fn first_look(
         &self,
         i: usize,
         options: &AnalysisOptions,
         boundary: bool,
         scratch: &mut Scratch<S>,
-    ) -> Result<(usize, u8, Option<Verdict>), Error> {
+    ) -> Result<(usize, u8, Option<Box<Verdict>>), Error> {
         let (neighbors, dimension) = if options.surface {
             // Taken on trust: only a boundary is looked for.
             (0, 2)
@@ -472,12 +480,12 @@ impl<S: Scalar> Analyzer<'_, S> {
             .iter()
             .any(|m| m.applies_to(dimension.into()) && !(boundary && m.finds_boundary()));
         let verdict = match dimension {
-            2 if !asked => Some(Verdict::REGULAR),
-            2 => Some(self.second_thought(i, options, boundary, scratch)),
-            _ if !asked => Some(Verdict::UNEXPLAINED),
-            _ => None,
+            2 if asked => Some(self.second_thought(i, options, boundary, scratch)),
+            2 => None,
+            _ if asked => None,
+            _ => Some(Verdict::UNEXPLAINED),
         };
-        Ok((neighbors, dimension, verdict))
+        Ok((neighbors, dimension, verdict.map(Box::new)))
     }
 
     /// What models say that ask for 2-dimensional neighborhoods.

@@ -97,12 +97,11 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// The points within `radius` of the given rows.
+    /// The points within a radius of some rows, `(row, radius)` for each.
     pub(super) fn about<S: Scalar>(
         analyzer: &Analyzer<'_, S>,
         analysis: &Analysis,
-        centers: &[usize],
-        radius: f64,
+        centers: &[(usize, f64)],
         margin: f64,
     ) -> Self {
         let found = execute::map_blocks(
@@ -111,7 +110,7 @@ impl Region {
             centers.len(),
             Vec::new,
             |near, c| {
-                let row = centers[c];
+                let (row, radius) = centers[c];
                 // The oracle knows the points where they were before they were moved.
                 let reach = radius + margin + analysis.offsets[row];
                 analyzer.oracle.indices_within(row, S::of(reach), near);

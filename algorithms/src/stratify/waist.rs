@@ -116,13 +116,8 @@ pub fn stratify<S: Scalar>(
         audit::metric(metric, analyzer.oracle)?;
     }
     let n = analysis.roles.len();
-    let mut near = Vec::new();
     let gap = 2.0 * NODE_SPACING * options.dl;
-    analysis.fill_curves(gap, options.dl, |row, radius, out| {
-        analyzer.oracle.within(row, S::of(radius), &mut near);
-        out.clear();
-        out.extend(near.iter().map(|x| x.index));
-    });
+    analysis.fill_curves(gap, options.dl);
     let analysis = &*analysis;
     let places = &analysis.places;
     let curves = Curves::new(analyzer, analysis, options.dl);
@@ -232,15 +227,33 @@ pub fn stratify<S: Scalar>(
     let mut pending: Vec<usize> = (0..jobs.len()).filter(|&j| found[j].is_none()).collect();
     let mut radius = options.tri_eps;
     let mut cut_edges = 0;
+    // The last graph, and how far it reaches about every landmark.
+    let mut known: Option<(CellGraph, Vec<f64>)> = None;
     for widening in 0..=WIDENINGS {
         if pending.is_empty() {
             break;
         }
-        let mut centers: Vec<usize> = pending.iter().map(|&j| rows[jobs[j].landmark]).collect();
-        centers.sort_unstable();
-        centers.dedup();
-        let region = Region::about(analyzer, analysis, &centers, radius, options.dl);
-        let graph = CellGraph::new(analyzer, analysis, &refs, &region);
+        let sufficient = known.take().filter(|(_, reach)| {
+            pending
+                .iter()
+                .all(|&j| reach[jobs[j].landmark] >= radius)
+        });
+        let (graph, reach) = match sufficient {
+            Some(known) => known,
+            None => {
+                let mut reach = vec![0.0_f64; rows.len()];
+                for &j in &pending {
+                    // Where curves cut charts they are likely to be widened.
+                    let spare = if jobs[j].group.is_some() { WIDENING } else { 1.0 };
+                    reach[jobs[j].landmark] = spare * radius;
+                }
+                let centers: Vec<(usize, f64)> = (rows.iter().copied().zip(reach.iter().copied()))
+                    .filter(|&(_, reach)| reach > 0.0)
+                    .collect();
+                let region = Region::about(analyzer, analysis, &centers, options.dl);
+                (CellGraph::new(analyzer, analysis, &refs, &region), reach)
+            }
+        };
         if widening == 0 {
             cut_edges = graph.cut;
         }
@@ -270,6 +283,7 @@ pub fn stratify<S: Scalar>(
         }
         pending = thin;
         radius *= WIDENING;
+        known = Some((graph, reach));
     }
     let neighborhoods: Vec<CellNeighborhood> = jobs
         .iter()
