@@ -4,11 +4,13 @@
 //! defaults, the [`prelude`] names what one needs every day, and the modules below lead to everything else.
 
 pub mod pipeline;
+mod spaces;
 
 pub use crosscap_algorithms as algorithms;
 pub use crosscap_backends as backends;
 pub use crosscap_core as core;
 pub use pipeline::{Method, Outcome, Parameters, Pipeline, Report, Stage};
+pub use spaces::{MetricName, Neighborhoods, Spaces, Warning};
 
 /// What a reconstruction needs, in one line.
 pub mod prelude {

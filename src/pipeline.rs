@@ -1,21 +1,29 @@
 //! From a point cloud to a verified surface: the parts put together with good defaults.
 
+use crate::spaces::{
+    Custom, Engines, MetricName, Neighborhoods, Spaces, Warning, custom, positions,
+};
 use crosscap_algorithms::certificate::{Certificate, CertificateOptions, Verdict, certify};
 use crosscap_algorithms::chart::ClassicalScaling;
+use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::homology::{Homology, homology};
 use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::moments::MomentTree;
+use crosscap_algorithms::neighborhood::{
+    FlatRadius, NearestCount, NeighborhoodPolicy, PolicyOracle, Surroundings,
+};
 use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::TwoPlanes;
 use crosscap_algorithms::stratify::{
-    Analysis, AnalysisOptions, Analyzer, Dimensions, Published, Role, Stratification,
+    Analysis, AnalysisOptions, Analyzer, ChartSpace, Dimensions, Published, Role, Stratification,
     StratifyCounts, StratifyOptions, stratify,
 };
 use crosscap_algorithms::triangulate::{
     LargestAngle, MinimumCircumradius, Rules, Triangulation, TriangulationCounts, Triangulator,
 };
 use crosscap_backends::euclidean::EuclideanOracle;
+use crosscap_backends::geodesic::GraphReport;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{
     CompatibilityTest, Complex, CurveEdge, DimensionEstimator, Error, LandmarkSelector, LocalChart,
@@ -89,6 +97,9 @@ pub struct Parameters {
     pub boundary: Vec<usize>,
     /// Which algorithm.
     pub method: Method,
+    /// Metrics and neighborhoods.
+    #[serde(skip_serializing_if = "Spaces::are_usual")]
+    pub spaces: Spaces,
     /// Number of threads, all processors when left out; changes no result.
     pub threads: Option<usize>,
 }
@@ -107,6 +118,7 @@ impl Parameters {
             surface: false,
             boundary: Vec::new(),
             method: Method::default(),
+            spaces: Spaces::default(),
             threads: None,
         }
     }
@@ -121,6 +133,7 @@ impl Parameters {
     pub fn chart_radius(&self) -> f64 {
         let usual = CHART_SEPARATIONS * self.dl;
         match self.method {
+            Method::Cells if self.spaces.wide_charts => self.tri_eps.unwrap_or(usual),
             Method::Cells => self.tri_eps.map_or(usual, |radius| radius.min(usual)),
             Method::Paper => self.tri_eps.unwrap_or(self.eps),
         }
@@ -167,7 +180,7 @@ impl Parameters {
                 "less than eps: the band of the curve lies inside the neighborhood",
             );
         }
-        Ok(())
+        self.spaces.check()
     }
 }
 
@@ -238,6 +251,12 @@ pub struct Report {
     pub added_landmarks: usize,
     /// Visits and repairs.
     pub triangulation: TriangulationCounts,
+    /// The graph of geodesic distances, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub graph: Option<GraphReport>,
+    /// What may be wrong although nothing failed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
     /// Seconds spent in each stage, in order.
     pub seconds: Vec<(Stage, f64)>,
 }
@@ -287,7 +306,8 @@ pub struct Pipeline<S: Scalar = f64> {
     chart: Box<dyn LocalChart>,
     test: Box<dyn CompatibilityTest>,
     rule: Box<dyn TriangleRule>,
-    metric: Option<Box<dyn MetricSpace<Scalar = S>>>,
+    analysis_metric: Option<Custom<S>>,
+    chart_metric: Option<Custom<S>>,
     observer: StageObserver,
 }
 
@@ -306,7 +326,8 @@ impl<S: Scalar> Pipeline<S> {
             chart: Box::new(ClassicalScaling),
             test: Box::new(PlanarPredicate),
             rule: Box::new(LargestAngle),
-            metric: None,
+            analysis_metric: None,
+            chart_metric: None,
             observer: Box::new(|_| {}),
             parameters,
         })
@@ -349,9 +370,17 @@ impl<S: Scalar> Pipeline<S> {
         self
     }
 
-    /// Distances for the triangulation other than the Euclidean ones, on the rows of the input.
+    /// A metric of your own for the analysis, on the rows of the input: neighborhoods, landmarks, cells.
+    /// Neighborhoods are found by looking at every point. Coordinates still come from the cloud.
+    pub fn analysis_metric(mut self, metric: Box<dyn MetricSpace<Scalar = S>>) -> Self {
+        self.analysis_metric = Some(Custom::new(metric));
+        self
+    }
+
+    /// A metric of your own for the charts, on the rows of the input: which landmarks are in a chart, and
+    /// the distances that it is laid out from.
     pub fn triangulation_metric(mut self, metric: Box<dyn MetricSpace<Scalar = S>>) -> Self {
-        self.metric = Some(metric);
+        self.chart_metric = Some(Custom::new(metric));
         self
     }
 
@@ -379,7 +408,9 @@ impl<S: Scalar> Pipeline<S> {
         let kept = first_of_each(cloud);
         let duplicates = cloud.len() - kept.len();
         let whole = cloud;
-        let (cloud, rows) = if duplicates == 0 || self.metric.is_some() {
+        // The metric knows the rows as they are, copies included.
+        let own_metric = self.analysis_metric.is_some() || self.chart_metric.is_some();
+        let (cloud, rows) = if duplicates == 0 || own_metric {
             (cloud.clone(), (0..cloud.len()).collect())
         } else {
             (cloud.select(&kept), kept)
@@ -392,22 +423,37 @@ impl<S: Scalar> Pipeline<S> {
         }
         let boundary = boundary_rows(&parameters.boundary, &rows, whole)?;
         let threads = Threads::new(parameters.threads.unwrap_or(0))?;
-        let oracle = EuclideanOracle::new(cloud.clone())?;
-
+        let flat_dimension = cloud.dimension();
+        let engines = Engines::new(&parameters.spaces, parameters.eps, &cloud, &threads)?;
         self.enter(Stage::Neighborhoods, &mut clock);
+        // From here on the points as the analysis sees them.
+        let cloud = &engines.cloud;
+        let oracle = &engines.euclidean;
+        let own_space = self.analysis_metric.as_ref().map(custom);
+        let space = own_space.unwrap_or_else(|| engines.analysis());
+        let own_charts = self.chart_metric.as_ref().map(custom);
+        let charts = own_charts.or_else(|| engines.charts());
+        // Balls of one radius in straight lines are what the moments are of.
+        let usual = self.analysis_metric.is_none()
+            && parameters.spaces.metric != MetricName::Geodesic
+            && parameters.spaces.neighborhoods == Neighborhoods::Radius;
         let known = match self.estimator {
-            None if !parameters.surface => {
-                MomentTree::new(&cloud)?.dimensions(parameters.eps, parameters.dt, &threads)?
+            None if !parameters.surface && usual => {
+                MomentTree::new(cloud)?.dimensions(parameters.eps, parameters.dt, &threads)?
             }
             _ => Vec::new(),
         };
+        let principal = PrincipalComponents::new(parameters.dt)?;
+        let estimator: &dyn DimensionEstimator<Scalar = S> =
+            self.estimator.as_deref().unwrap_or(&principal);
         let analyzer = Analyzer {
-            cloud: &cloud,
-            metric: &oracle,
-            oracle: &oracle,
-            dimensions: match &self.estimator {
-                Some(estimator) => Dimensions::Estimator(estimator.as_ref()),
-                None => Dimensions::Known(&known),
+            cloud,
+            metric: space.metric,
+            oracle: space.oracle,
+            dimensions: if known.is_empty() {
+                Dimensions::Estimator(estimator)
+            } else {
+                Dimensions::Known(&known)
             },
             models: &self.models,
             execute: &threads,
@@ -426,6 +472,7 @@ impl<S: Scalar> Pipeline<S> {
             Some(published) => published.analyze(&analyzer)?,
             None => analyzer.analyze(&AnalysisOptions {
                 eps: parameters.eps,
+                radii: radii(&parameters, &space, cloud, estimator, &threads)?,
                 surface: parameters.surface,
                 boundary,
             })?,
@@ -441,14 +488,14 @@ impl<S: Scalar> Pipeline<S> {
                 Some(published) => published.stratify(
                     &analyzer,
                     &analysis,
-                    self.metric.as_deref(),
+                    charts.as_ref().map(|charts| charts.metric),
                     self.selector.as_ref(),
                     self.chart.as_ref(),
                 )?,
                 None => stratify(
                     &analyzer,
                     &mut analysis,
-                    self.metric.as_deref(),
+                    charts.as_ref(),
                     self.selector.as_ref(),
                     &StratifyOptions {
                         dl: parameters.dl,
@@ -467,7 +514,7 @@ impl<S: Scalar> Pipeline<S> {
             let rounds = clock.rounds(Stage::Triangulation);
             if sound && literal.is_none() && rounds <= REFINEMENTS {
                 add_where_astray(
-                    &oracle,
+                    oracle,
                     &analysis,
                     &stratification,
                     &triangulation.complex,
@@ -518,7 +565,7 @@ impl<S: Scalar> Pipeline<S> {
         let report = Report {
             version: env!("CARGO_PKG_VERSION"),
             points: whole.len(),
-            dimension: cloud.dimension(),
+            dimension: flat_dimension,
             duplicates,
             mean_neighbors: analysis.mean_neighbors,
             candidates: analysis.candidates,
@@ -527,8 +574,14 @@ impl<S: Scalar> Pipeline<S> {
             landmarks: stratification.counts,
             added_landmarks: extra.len(),
             triangulation: triangulation.counts,
+            graph: engines.graph().cloned(),
+            warnings: engines.warnings(),
             seconds: clock.finish(),
             parameters,
+        };
+        let mesh = Mesh {
+            vertices: positions(&mesh.vertices, flat_dimension)?,
+            ..mesh
         };
         Ok(Outcome {
             failures,
@@ -571,6 +624,32 @@ impl<S: Scalar> Pipeline<S> {
     fn enter(&mut self, stage: Stage, clock: &mut Clock) {
         clock.enter(stage);
         (self.observer)(stage);
+    }
+}
+
+/// The radii of the neighborhoods, where they are not eps everywhere.
+fn radii<S: Scalar>(
+    parameters: &Parameters,
+    space: &ChartSpace<'_, S>,
+    cloud: &PointCloud<S>,
+    estimator: &dyn DimensionEstimator<Scalar = S>,
+    threads: &Threads,
+) -> Result<Option<Vec<f64>>, Error> {
+    let around = Surroundings {
+        oracle: space.oracle,
+        metric: space.metric,
+        cloud: Some(cloud),
+        execute: threads,
+    };
+    let of = |policy: &dyn NeighborhoodPolicy<S>| {
+        Ok(Some(PolicyOracle::new(policy, &around)?.into_radii()))
+    };
+    match parameters.spaces.neighborhoods {
+        // Nothing is looked for in neighborhoods.
+        _ if parameters.surface => Ok(None),
+        Neighborhoods::Radius => Ok(None),
+        Neighborhoods::Nearest(count) => of(&NearestCount::new(count)?),
+        Neighborhoods::Adaptive(count) => of(&FlatRadius::new(parameters.eps, count, estimator)?),
     }
 }
 

@@ -12,6 +12,7 @@ pub mod landmarks;
 pub mod laws;
 pub mod metric;
 pub mod moments;
+pub mod neighborhood;
 pub mod pieces;
 pub mod predicate;
 pub mod principal;

@@ -14,6 +14,7 @@ mod picture;
 mod points;
 mod reconstruct;
 mod sample;
+mod spaces;
 mod terminal;
 mod view;
 

@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::number::{positive, share};
+use super::spaces::SpaceArguments;
 use clap::{Args, ValueEnum};
 use crosscap::pipeline::{Method, Parameters};
 
@@ -94,6 +95,9 @@ pub struct ParameterArguments {
     #[arg(long, value_name = "NAME", value_enum, default_value_t)]
     pub method: MethodName,
 
+    #[command(flatten)]
+    pub spaces: SpaceArguments,
+
     /// Number of threads, 0 for all processors; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
@@ -136,6 +140,7 @@ impl ParameterArguments {
             surface: self.surface,
             boundary,
             method: self.method.into(),
+            spaces: self.spaces.spaces(),
             threads: threads(self.threads),
         })
     }

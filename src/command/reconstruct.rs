@@ -86,6 +86,9 @@ impl Reconstruct {
             .parameters
             .parameters(self.boundary_rows(cloud.len())?)?;
         let outcome = reconstruct(&cloud, parameters.clone())?;
+        for warning in &outcome.report.warnings {
+            complain(format_args!("warning: {warning}"));
+        }
         let verified = outcome.is_verified();
         if !verified {
             for reason in reasons(&outcome) {
@@ -239,7 +242,7 @@ pub fn write_reconstruction(
     parameters: &Parameters,
     outcome: &Outcome,
 ) -> Result<(), Failure> {
-    let metadata = json!({
+    let mut metadata = json!({
         "crosscap": env!("CARGO_PKG_VERSION"),
         "verified": outcome.is_verified(),
         "eps": parameters.eps,
@@ -253,6 +256,9 @@ pub fn write_reconstruction(
         "boundary_points": parameters.boundary.len(),
         "method": parameters.method.to_string(),
     });
+    if !parameters.spaces.are_usual() {
+        metadata["spaces"] = json!(parameters.spaces);
+    }
     let pieces = outcome.pieces.as_ref().ok();
     let extras = MeshExtras {
         metadata,

@@ -27,6 +27,9 @@ pub enum Role {
 pub struct AnalysisOptions {
     /// Radius of the neighborhoods (strict), unit of the data.
     pub eps: f64,
+    /// A radius for every point instead (strict), unit of the data: see
+    /// [`NeighborhoodPolicy`](crate::neighborhood::NeighborhoodPolicy).
+    pub radii: Option<Vec<f64>>,
     /// Take every point as 2-dimensional and look for no curve.
     pub surface: bool,
     /// Rows that lie on the boundary.
@@ -203,6 +206,15 @@ impl<S: Scalar> Analyzer<'_, S> {
                 expected: "a positive length".into(),
             });
         }
+        if let Some(radii) = &options.radii
+            && radii.len() != n
+        {
+            return Err(Error::Shape {
+                found: format!("{} radii", radii.len()),
+                expected: format!("{n}, one a point"),
+            });
+        }
+        let radius = |i: usize| options.radii.as_ref().map_or(options.eps, |r| r[i]);
         let mut boundary = vec![false; n];
         for &row in &options.boundary {
             *boundary.get_mut(row).ok_or(Error::Index {
@@ -231,7 +243,7 @@ impl<S: Scalar> Analyzer<'_, S> {
         };
         if !options.surface {
             let found = execute::map(self.execute, n, Scratch::default, |scratch, i| {
-                self.point(i, options.eps, scratch)
+                self.point(i, radius(i), scratch)
             });
             let mut total = 0usize;
             for (i, found) in found.into_iter().enumerate() {
@@ -241,9 +253,9 @@ impl<S: Scalar> Analyzer<'_, S> {
                 out.candidates += usize::from(found.dimension != 2);
                 out.take(i, found.kind, &mut places, boundary[i]);
             }
-            let again = self.beside_curves(&out, options.eps);
+            let again = self.beside_curves(&out, radius);
             let more = execute::map(self.execute, again.len(), Scratch::default, |scratch, k| {
-                self.explain(again[k], options.eps, scratch)
+                self.explain(again[k], radius(again[k]), scratch)
             });
             for (&i, kind) in again.iter().zip(more) {
                 if !matches!(kind, Kind::Unexplained) {
@@ -265,12 +277,12 @@ impl<S: Scalar> Analyzer<'_, S> {
         Ok(out)
     }
 
-    /// Points that passed for 2-dimensional within `eps` of a point on a curve.
+    /// Points that passed for 2-dimensional within the radius of a point on a curve.
     ///
     /// Where sheets cross at a small angle the share of variance that tells a crossing is near the
     /// tolerance, and single points fall below it: a curve that was found on both sides of such a
     /// point is looked for there too.
-    fn beside_curves(&self, analysis: &Analysis, eps: f64) -> Vec<usize> {
+    fn beside_curves(&self, analysis: &Analysis, radius: impl Fn(usize) -> f64) -> Vec<usize> {
         let mut near = Vec::new();
         let mut asked = vec![false; analysis.roles.len()];
         let mut out = Vec::new();
@@ -278,6 +290,7 @@ impl<S: Scalar> Analyzer<'_, S> {
             if analysis.roles[i] != Role::Curve || asked[i] {
                 continue;
             }
+            let eps = radius(i);
             self.oracle.within(i, S::of(eps), &mut near);
             for x in &near {
                 if analysis.roles[x.index] == Role::Curve {

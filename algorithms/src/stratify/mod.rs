@@ -8,4 +8,4 @@ mod waist;
 
 pub use analysis::{Analysis, AnalysisOptions, Analyzer, Dimensions, Role};
 pub use paper::Published;
-pub use waist::{Stratification, StratifyCounts, StratifyOptions, stratify};
+pub use waist::{ChartSpace, Stratification, StratifyCounts, StratifyOptions, stratify};

@@ -3,9 +3,10 @@
 use super::analysis::{Analysis, Analyzer, Role};
 use super::cells::{CellGraph, Flood, Reference, references};
 use super::chains::{Curves, NODE_SPACING, more_references};
+use crate::execute;
 use crosscap_core::{
-    CellNeighborhood, Error, LandmarkSelector, MetricSpace, Scalar, SparseDistances,
-    StratifiedLandmarks, squared_distance,
+    CellNeighborhood, Error, LandmarkSelector, MetricSpace, Neighbor, NeighborhoodOracle, Scalar,
+    SparseDistances, StratifiedLandmarks, squared_distance,
 };
 use serde::{Deserialize, Serialize};
 
@@ -50,6 +51,93 @@ pub struct Stratification<S> {
     pub counts: StratifyCounts,
 }
 
+/// The space that charts live in, where it is not that of the places.
+#[derive(Clone, Copy)]
+pub struct ChartSpace<'a, S: Scalar> {
+    /// Distances inside the charts.
+    pub metric: &'a dyn MetricSpace<Scalar = S>,
+    /// What is inside a chart; serves the same metric.
+    pub oracle: &'a dyn NeighborhoodOracle<Scalar = S>,
+}
+
+impl<S: Scalar> ChartSpace<'_, S> {
+    /// Distances of sorted pairs of landmarks. Where a landmark was moved onto a curve, what the move
+    /// does to the straight line is added: a metric knows the points as they were.
+    fn lengths(
+        &self,
+        analyzer: &Analyzer<'_, S>,
+        analysis: &Analysis,
+        rows: &[usize],
+        pairs: &[(u32, u32)],
+    ) -> Vec<S> {
+        let mut lengths = lengths(analyzer, self.metric, rows, pairs);
+        for (length, &(a, b)) in lengths.iter_mut().zip(pairs) {
+            let (p, q) = (rows[a as usize], rows[b as usize]);
+            if analysis.offsets[p] > 0.0 || analysis.offsets[q] > 0.0 {
+                let moved = analysis.places.squared_distance(p, q).sqrt();
+                let straight = analyzer.cloud.squared_distance(p, q).sqrt();
+                *length = S::of((length.as_f64() + moved - straight).max(0.0));
+            }
+        }
+        lengths
+    }
+}
+
+/// Distances of sorted pairs of landmarks in a metric, asked for row by row.
+pub(super) fn lengths<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    metric: &dyn MetricSpace<Scalar = S>,
+    rows: &[usize],
+    pairs: &[(u32, u32)],
+) -> Vec<S> {
+    let runs: Vec<&[(u32, u32)]> = pairs.chunk_by(|x, y| x.0 == y.0).collect();
+    let lengths = execute::map(analyzer.execute, runs.len(), Vec::new, |targets, k| {
+        targets.clear();
+        targets.extend(runs[k].iter().map(|&(_, b)| rows[b as usize]));
+        let mut lengths = Vec::with_capacity(targets.len());
+        metric.distances_to(rows[runs[k][0].0 as usize], targets, &mut lengths);
+        lengths
+    });
+    lengths.into_iter().flatten().collect()
+}
+
+/// The points of a ball with their distances from its center, reusable.
+struct Ball<S> {
+    found: Vec<Neighbor<S>>,
+    stamps: Vec<u32>,
+    distances: Vec<f64>,
+    round: u32,
+}
+
+impl<S: Scalar> Ball<S> {
+    fn new(n: usize) -> Self {
+        Self {
+            found: Vec::new(),
+            stamps: vec![0; n],
+            distances: vec![0.0; n],
+            round: 0,
+        }
+    }
+
+    fn fill(&mut self, oracle: &dyn NeighborhoodOracle<Scalar = S>, center: usize, radius: f64) {
+        self.round += 1;
+        oracle.within(center, S::of(radius), &mut self.found);
+        for x in &self.found {
+            self.stamps[x.index] = self.round;
+            self.distances[x.index] = x.distance.as_f64();
+        }
+    }
+
+    fn holds(&self, row: usize) -> bool {
+        self.stamps[row] == self.round
+    }
+
+    /// Distance of a point that the ball holds.
+    fn distance(&self, row: usize) -> f64 {
+        self.distances[row]
+    }
+}
+
 /// Points of a cell that must be flooded for a curve landmark to be at the rim of the flood.
 const CONTACTS: usize = 6;
 /// Spacing of the decompositions that label points, as a share of the radius of their fit.
@@ -64,15 +152,15 @@ const CONTACT_REACH: f64 = 2.0;
 
 /// Cuts the cloud along its curves and points into cells and describes every landmark's surroundings.
 ///
-/// `metric` gives the distances inside the neighborhoods, any metric on the rows of the input;
-/// `None` for Euclidean distances of the places, moved ones included.
+/// `charts` gives the extent of the neighborhoods and the distances inside them, in any metric on the
+/// rows of the input; `None` for Euclidean distances of the places, moved ones included.
 ///
 /// # Errors
 /// [`Error::Parameter`] for lengths that are not positive; those of the selector.
 pub fn stratify<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
     analysis: &mut Analysis,
-    metric: Option<&dyn MetricSpace<Scalar = S>>,
+    charts: Option<&ChartSpace<'_, S>>,
     selector: &dyn LandmarkSelector<Scalar = S>,
     options: &StratifyOptions,
 ) -> Result<Stratification<S>, Error> {
@@ -148,6 +236,7 @@ pub fn stratify<S: Scalar>(
 
     let contacts = Contacts::new(analyzer, analysis, &curves, &refs, options.dl);
     let mut flood = Flood::new(n);
+    let mut ball = Ball::new(if charts.is_some() { n } else { 0 });
     let mut hits = vec![0u32; contacts.groups.len()];
     let mut touched: Vec<u32> = Vec::new();
     let mut neighborhoods = Vec::with_capacity(rows.len());
@@ -164,7 +253,13 @@ pub fn stratify<S: Scalar>(
         let mut radius = options.tri_eps;
         for widening in 0..=WIDENINGS {
             let reach = radius * radius;
-            let inside = |row: usize| squared_distance(origin, places.point(row)) < reach;
+            if let Some(charts) = charts {
+                ball.fill(charts.oracle, rows[center], radius);
+            }
+            let inside = |row: usize| match charts {
+                None => squared_distance(origin, places.point(row)) < reach,
+                Some(_) => ball.holds(row),
+            };
             match group {
                 None => flood.run(&graph, std::iter::once(rows[center] as u32), inside),
                 Some(g) => flood.run(&graph, contacts.groups[g].rows.iter().copied(), inside),
@@ -198,7 +293,10 @@ pub fn stratify<S: Scalar>(
         }
         members.sort_unstable();
         members.dedup();
-        let far = |k: u32| squared_distance(origin, places.point(rows[k as usize]));
+        let far = |k: u32| match charts {
+            None => squared_distance(origin, places.point(rows[k as usize])),
+            Some(_) => ball.distance(rows[k as usize]),
+        };
         members.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
         members.insert(0, center as u32);
         neighborhoods.push(CellNeighborhood {
@@ -214,16 +312,18 @@ pub fn stratify<S: Scalar>(
     }
     pairs.sort_unstable();
     pairs.dedup();
+    let lengths: Vec<S> = match charts {
+        Some(charts) => charts.lengths(analyzer, analysis, &rows, &pairs),
+        None => (pairs.iter())
+            .map(|&(a, b)| {
+                let (p, q) = (rows[a as usize], rows[b as usize]);
+                S::of(places.squared_distance(p, q).sqrt())
+            })
+            .collect(),
+    };
     let distances = SparseDistances::new(
         rows.len(),
-        pairs.iter().map(|&(a, b)| {
-            let (p, q) = (rows[a as usize], rows[b as usize]);
-            let d = match metric {
-                Some(metric) => metric.distance(p, q),
-                None => S::of(places.squared_distance(p, q).sqrt()),
-            };
-            (a, b, d)
-        }),
+        pairs.iter().zip(&lengths).map(|(&(a, b), &d)| (a, b, d)),
     )?;
     let counts = StratifyCounts {
         landmarks: rows.len(),
