@@ -1,9 +1,12 @@
 //! From a point cloud to a verified surface: the parts put together with good defaults.
 
+use crate::given::GivenSpace;
 use crate::spaces::{
     Custom, Engines, MetricName, Neighborhoods, Spaces, Warning, custom, positions,
 };
-use crosscap_algorithms::certificate::{Certificate, CertificateOptions, Verdict, certify};
+use crosscap_algorithms::certificate::{
+    Certificate, CertificateOptions, Verdict, certify, certify_by_distances,
+};
 use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::homology::{Homology, homology};
@@ -254,6 +257,9 @@ pub struct Report {
     /// The graph of geodesic distances, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub graph: Option<GraphReport>,
+    /// What became of distances that were the only input.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub given: Option<GivenSpace>,
     /// What may be wrong although nothing failed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,
@@ -287,6 +293,8 @@ impl Outcome {
 
 /// Called at the beginning of every stage.
 type StageObserver = Box<dyn FnMut(Stage)>;
+/// Called for every warning.
+type WarningObserver = Box<dyn FnMut(&Warning)>;
 
 /// A reconstruction put together from parts, each of which can be replaced.
 ///
@@ -309,6 +317,7 @@ pub struct Pipeline<S: Scalar = f64> {
     analysis_metric: Option<Custom<S>>,
     chart_metric: Option<Custom<S>>,
     observer: StageObserver,
+    warned: WarningObserver,
 }
 
 impl<S: Scalar> Pipeline<S> {
@@ -329,6 +338,7 @@ impl<S: Scalar> Pipeline<S> {
             analysis_metric: None,
             chart_metric: None,
             observer: Box::new(|_| {}),
+            warned: Box::new(|_| {}),
             parameters,
         })
     }
@@ -390,12 +400,32 @@ impl<S: Scalar> Pipeline<S> {
         self
     }
 
+    /// Calls `observer` for every warning as soon as it is known, also where there is no outcome later.
+    pub fn on_warning(mut self, observer: impl FnMut(&Warning) + 'static) -> Self {
+        self.warned = Box::new(observer);
+        self
+    }
+
     /// Reconstructs the surface that `cloud` was sampled from.
     ///
     /// # Errors
     /// Input that cannot be worked on ([`Error::is_input`]), or a stage that failed before there was
     /// a mesh. A mesh that is not good comes back in the outcome, unverified.
     pub fn reconstruct(&mut self, cloud: &PointCloud<S>) -> Result<Outcome, Error> {
+        self.run(cloud, None)
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// With `given` distances, those of the places of the cloud are used for nothing.
+    pub(crate) fn run(
+        &mut self,
+        cloud: &PointCloud<S>,
+        given: Option<ChartSpace<'_, S>>,
+    ) -> Result<Outcome, Error> {
         let mut clock = Clock::default();
         let parameters = self.parameters.clone();
         self.enter(Stage::Index, &mut clock);
@@ -409,7 +439,8 @@ impl<S: Scalar> Pipeline<S> {
         let duplicates = cloud.len() - kept.len();
         let whole = cloud;
         // The metric knows the rows as they are, copies included.
-        let own_metric = self.analysis_metric.is_some() || self.chart_metric.is_some();
+        let own_metric =
+            given.is_some() || self.analysis_metric.is_some() || self.chart_metric.is_some();
         let (cloud, rows) = if duplicates == 0 || own_metric {
             (cloud.clone(), (0..cloud.len()).collect())
         } else {
@@ -425,13 +456,16 @@ impl<S: Scalar> Pipeline<S> {
         let threads = Threads::new(parameters.threads.unwrap_or(0))?;
         let flat_dimension = cloud.dimension();
         let engines = Engines::new(&parameters.spaces, parameters.eps, &cloud, &threads)?;
+        let warnings = engines.warnings();
+        warnings.iter().for_each(|warning| self.warn(warning));
+
         self.enter(Stage::Neighborhoods, &mut clock);
         // From here on the points as the analysis sees them.
         let cloud = &engines.cloud;
         let oracle = &engines.euclidean;
-        let own_space = self.analysis_metric.as_ref().map(custom);
+        let own_space = given.or(self.analysis_metric.as_ref().map(custom));
         let space = own_space.unwrap_or_else(|| engines.analysis());
-        let own_charts = self.chart_metric.as_ref().map(custom);
+        let own_charts = self.chart_metric.as_ref().map(custom).or(given);
         let charts = own_charts.or_else(|| engines.charts());
         // Balls of one radius in straight lines are what the moments are of.
         let usual = self.analysis_metric.is_none()
@@ -512,7 +546,7 @@ impl<S: Scalar> Pipeline<S> {
             // What cannot be triangulated is not mended by more landmarks.
             let sound = triangulation.incomplete.len() * 100 <= stratification.rows.len();
             let rounds = clock.rounds(Stage::Triangulation);
-            if sound && literal.is_none() && rounds <= REFINEMENTS {
+            if sound && literal.is_none() && given.is_none() && rounds <= REFINEMENTS {
                 add_where_astray(
                     oracle,
                     &analysis,
@@ -539,16 +573,17 @@ impl<S: Scalar> Pipeline<S> {
             .iter()
             .map(|&k| rows[stratification.rows[k as usize]])
             .collect();
-        let certificate = certify(
-            &mesh,
-            &CertificateOptions {
-                points: Some(&points),
-                landmark_separation: Some(parameters.dl),
-                unused_landmarks: &unused,
-                closed: parameters.boundary.is_empty(),
-                ..CertificateOptions::default()
-            },
-        );
+        let options = CertificateOptions {
+            points: Some(&points),
+            landmark_separation: Some(parameters.dl),
+            unused_landmarks: &unused,
+            closed: parameters.boundary.is_empty(),
+            ..CertificateOptions::default()
+        };
+        let certificate = match &given {
+            None => certify(&mesh, &options),
+            Some(space) => certify_by_distances(&mesh, space.metric, space.oracle, &options),
+        };
         // A star that stayed open in its own chart may be complete all the same; whether it is, the
         // certificate has seen edge by edge and link by link.
         let complete = literal.is_none() && matches!(certificate.verdict(), Verdict::Verified);
@@ -575,7 +610,8 @@ impl<S: Scalar> Pipeline<S> {
             added_landmarks: extra.len(),
             triangulation: triangulation.counts,
             graph: engines.graph().cloned(),
-            warnings: engines.warnings(),
+            given: None,
+            warnings,
             seconds: clock.finish(),
             parameters,
         };
@@ -619,6 +655,10 @@ impl<S: Scalar> Pipeline<S> {
                 Rules::MEASURED
             },
         }
+    }
+
+    pub(crate) fn warn(&mut self, warning: &Warning) {
+        (self.warned)(warning);
     }
 
     fn enter(&mut self, stage: Stage, clock: &mut Clock) {

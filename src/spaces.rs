@@ -197,12 +197,30 @@ impl Spaces {
 pub enum Warning {
     /// About the graph of geodesic distances.
     Graph(GraphWarning),
+    /// Distances are known up to less than a chart reaches.
+    Range {
+        /// The first point of which this is so.
+        point: usize,
+        /// The largest distance known from it, unit of the data.
+        known: f64,
+        /// What a chart reaches, unit of the data.
+        radius: f64,
+    },
 }
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Graph(warning) => write!(f, "{warning} (--graph-eps, --graph-k)"),
+            Self::Graph(warning) => write!(f, "{warning}"),
+            Self::Range {
+                point,
+                known,
+                radius,
+            } => write!(
+                f,
+                "distances from point {point} are given up to {known}, and charts reach {radius}: longer ones are \
+                 lengths of paths; give more of them, or decrease dl"
+            ),
         }
     }
 }
@@ -318,6 +336,14 @@ pub(crate) fn positions(
     }
     let rows = places.iter().flat_map(|row| row[..dimension].to_vec());
     PointCloud::new(dimension, rows.collect())
+}
+
+/// Places with zeros behind their coordinates up to `dimension` of them.
+pub(crate) fn padded(places: &PointCloud<f64>, dimension: usize) -> Result<PointCloud<f64>, Error> {
+    let width = places.dimension().max(dimension);
+    let zeros = vec![0.0; width - places.dimension()];
+    let rows = places.iter().flat_map(|row| [row, &zeros].concat());
+    PointCloud::new(width, rows.collect())
 }
 
 #[cfg(test)]

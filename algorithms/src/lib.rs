@@ -16,6 +16,7 @@ pub mod neighborhood;
 pub mod pieces;
 pub mod predicate;
 pub mod principal;
+pub mod scaling;
 pub mod singularity;
 pub mod stratify;
 pub mod surfaces;
