@@ -4,6 +4,7 @@ use crate::given::GivenSpace;
 use crate::spaces::{
     Custom, Engines, MetricName, Neighborhoods, Spaces, Warning, custom, positions,
 };
+use crate::watched::{Distortion, Watched};
 use crosscap_algorithms::certificate::{
     Certificate, CertificateOptions, Verdict, certify, certify_by_distances,
 };
@@ -254,6 +255,8 @@ pub struct Report {
     pub added_landmarks: usize,
     /// Visits and repairs.
     pub triangulation: TriangulationCounts,
+    /// How much the charts lose.
+    pub chart_distortion: Distortion,
     /// The graph of geodesic distances, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub graph: Option<GraphReport>,
@@ -514,6 +517,7 @@ impl<S: Scalar> Pipeline<S> {
 
         let mut extra: Vec<usize> = Vec::new();
         let mut observer = std::mem::replace(&mut self.observer, Box::new(|_| {}));
+        let watched = Watched::new(self.chart.as_ref());
         let (analysis, stratification, triangulation) = loop {
             clock.enter(Stage::Landmarks);
             observer(Stage::Landmarks);
@@ -541,7 +545,9 @@ impl<S: Scalar> Pipeline<S> {
             };
             clock.enter(Stage::Triangulation);
             observer(Stage::Triangulation);
-            let triangulation = self.triangulator().triangulate(&stratification.waist)?;
+            let triangulation = self
+                .triangulator(&watched)
+                .triangulate(&stratification.waist)?;
             let before = extra.len();
             // What cannot be triangulated is not mended by more landmarks.
             let sound = triangulation.incomplete.len() * 100 <= stratification.rows.len();
@@ -561,6 +567,7 @@ impl<S: Scalar> Pipeline<S> {
             }
         };
         self.observer = observer;
+        let chart_distortion = watched.distortion();
 
         self.enter(Stage::Homology, &mut clock);
         let mesh = mesh_of(&triangulation.complex, &stratification, &analysis, &rows)?;
@@ -609,6 +616,7 @@ impl<S: Scalar> Pipeline<S> {
             landmarks: stratification.counts,
             added_landmarks: extra.len(),
             triangulation: triangulation.counts,
+            chart_distortion,
             graph: engines.graph().cloned(),
             given: None,
             warnings,
@@ -634,13 +642,13 @@ impl<S: Scalar> Pipeline<S> {
     /// # Errors
     /// Those of [`Triangulator::triangulate`].
     pub fn triangulate(&self, waist: &StratifiedLandmarks<S>) -> Result<Triangulation, Error> {
-        self.triangulator().triangulate(waist)
+        self.triangulator(self.chart.as_ref()).triangulate(waist)
     }
 
-    fn triangulator(&self) -> Triangulator<'_> {
+    fn triangulator<'a>(&'a self, chart: &'a dyn LocalChart) -> Triangulator<'a> {
         let literal = self.parameters.method == Method::Paper;
         Triangulator {
-            chart: self.chart.as_ref(),
+            chart,
             test: self.test.as_ref(),
             rule: if literal {
                 &MinimumCircumradius

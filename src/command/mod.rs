@@ -1,6 +1,8 @@
 //! Commands, one a file, and what they share.
 
 mod check;
+mod compare;
+mod compare_plot;
 mod convert;
 mod demo;
 mod failure;
@@ -58,6 +60,7 @@ enum Command {
     Sample(sample::Sample),
     Reconstruct(Box<reconstruct::Reconstruct>),
     Check(check::Check),
+    Compare(compare::Compare),
     View(view::View),
     Convert(convert::Convert),
     Paper(paper::Paper),
@@ -81,6 +84,7 @@ pub fn run() -> ExitCode {
         Command::Sample(command) => command.run(),
         Command::Reconstruct(command) => command.run(),
         Command::Check(command) => command.run(),
+        Command::Compare(command) => command.run(),
         Command::View(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Paper(command) => command.run(),
