@@ -6,6 +6,8 @@ use crate::watched::Distortion;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{Error, PointCloud, Scalar};
 use serde::Serialize;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// What is compared.
@@ -100,13 +102,26 @@ pub fn compare<S: Scalar>(
     let jobs: Vec<(MetricName, f64)> = (comparison.metrics.iter())
         .flat_map(|&metric| comparison.radii.iter().map(move |&eps| (metric, eps)))
         .collect();
-    let threads = Threads::new(base.threads.unwrap_or(0))?;
-    Ok(threads.map(jobs.len(), |k| {
-        let (metric, eps) = jobs[k];
-        let run = one(cloud, base, comparison, metric, eps);
-        done();
-        run
-    }))
+    // Plain threads: one of a pool would take up another run while its own waits for the pool inside.
+    let count = Threads::new(base.threads.unwrap_or(0))?.count();
+    let runs: Vec<OnceLock<ComparedRun>> = jobs.iter().map(|_| OnceLock::new()).collect();
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..count.min(jobs.len()) {
+            scope.spawn(|| {
+                loop {
+                    let k = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(&(metric, eps)) = jobs.get(k) else {
+                        break;
+                    };
+                    // Every job is taken once, so setting it cannot fail.
+                    let _ = runs[k].set(one(cloud, base, comparison, metric, eps));
+                    done();
+                }
+            });
+        }
+    });
+    Ok(runs.into_iter().filter_map(OnceLock::into_inner).collect())
 }
 
 fn one<S: Scalar>(

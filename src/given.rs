@@ -3,7 +3,7 @@
 use crate::pipeline::{Outcome, Parameters, Pipeline};
 use crate::spaces::Warning;
 use crosscap_algorithms::metric::{BruteForceOracle, GivenDistances};
-use crosscap_algorithms::scaling::{Scaled, scale_metric, scale_patches};
+use crosscap_algorithms::scaling::{Scaled, picture_of_metric, scale_metric, scale_patches};
 use crosscap_algorithms::stratify::ChartSpace;
 use crosscap_backends::files::Distances;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
@@ -66,12 +66,11 @@ impl Pipeline<f64> {
             Distances::Dense { count, values } => {
                 let metric = GivenDistances::new(*count, values.clone())?;
                 let oracle = BruteForceOracle::new(metric);
-                let most = usize::MAX;
-                let scaled = scale_metric(oracle.metric(), most, &threads)?;
+                let scaled = scale_metric(oracle.metric(), usize::MAX, &threads)?;
                 if self.is_exact(&scaled) {
                     return self.with_coordinates(&scaled);
                 }
-                let picture = scale_metric(oracle.metric(), PICTURE, &threads)?;
+                let picture = picture_of_metric(oracle.metric(), PICTURE)?;
                 let space = ChartSpace {
                     metric: oracle.metric(),
                     oracle: &oracle,
@@ -85,7 +84,7 @@ impl Pipeline<f64> {
                     return self.with_coordinates(&scaled);
                 }
                 let (metric, warnings) = paths(known, self.parameters(), &threads)?;
-                let picture = scale_metric(&metric, PICTURE, &threads)?;
+                let picture = picture_of_metric(&metric, PICTURE)?;
                 let space = ChartSpace {
                     metric: &metric,
                     oracle: &metric,

@@ -32,12 +32,6 @@ impl Threads {
         self.0.install(work)
     }
 
-    /// `work(k)` for every `k` below `count`, in order, with these threads.
-    pub fn map<T: Send>(&self, count: usize, work: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-        self.0
-            .install(|| (0..count).into_par_iter().map(work).collect())
-    }
-
     /// Number of threads.
     pub fn count(&self) -> usize {
         self.0.current_num_threads()

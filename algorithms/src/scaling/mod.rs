@@ -13,7 +13,7 @@ mod patches;
 mod pivots;
 
 pub use patches::scale_patches;
-pub use pivots::scale_metric;
+pub use pivots::{picture_of_metric, scale_metric};
 
 use crosscap_core::PointCloud;
 

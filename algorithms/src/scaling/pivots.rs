@@ -35,25 +35,9 @@ pub fn scale_metric<S: Scalar>(
     most: usize,
     execute: &dyn Execute,
 ) -> Result<Scaled, Error> {
-    let n = metric.len();
-    if n == 0 {
-        return Err(Error::Shape {
-            found: "no point".into(),
-            expected: "at least 1".into(),
-        });
-    }
     let (pivots, squares) = spread(metric)?;
-    let frame = PivotFrame::new(&pivots, &squares, n, most);
-    let width = frame.width();
-    let mut places = vec![0.0; n * width];
-    let mut to_pivots = vec![0.0; pivots.len()];
-    for (i, place) in places.chunks_exact_mut(width).enumerate() {
-        for (d, row) in to_pivots.iter_mut().zip(squares.chunks_exact(n)) {
-            *d = row[i];
-        }
-        frame.place(&to_pivots, place);
-    }
-    let places = PointCloud::new(width, places)?;
+    let places = placed(&pivots, &squares, metric.len(), most)?;
+    let n = metric.len();
     let all: Vec<usize> = (0..n).collect();
     let worst = execute::map(execute, n, Vec::new, |row, i| {
         metric.distances_to(i, &all[..i], row);
@@ -67,11 +51,59 @@ pub fn scale_metric<S: Scalar>(
     })
 }
 
+/// The same for distances that are not those of points, where all of them would cost too much: a
+/// picture in R^`dimension` or less. The deviation is over the distances to the pivots.
+///
+/// # Errors
+/// As [`scale_metric`].
+pub fn picture_of_metric<S: Scalar>(
+    metric: &dyn MetricSpace<Scalar = S>,
+    dimension: usize,
+) -> Result<Scaled, Error> {
+    let (pivots, squares) = spread(metric)?;
+    let n = metric.len();
+    let places = placed(&pivots, &squares, n, dimension)?;
+    let differences = (squares.chunks_exact(n).zip(&pivots)).flat_map(|(row, &p)| {
+        let places = &places;
+        let pairs = row.iter().enumerate();
+        pairs.map(move |(j, s)| (s.sqrt() - places.squared_distance(p, j).sqrt()).abs())
+    });
+    Ok(Scaled {
+        deviation: differences.fold(0.0, f64::max),
+        places,
+    })
+}
+
+fn placed(
+    pivots: &[usize],
+    squares: &[f64],
+    n: usize,
+    most: usize,
+) -> Result<PointCloud<f64>, Error> {
+    let frame = PivotFrame::new(pivots, squares, n, most);
+    let width = frame.width();
+    let mut places = vec![0.0; n * width];
+    let mut to_pivots = vec![0.0; pivots.len()];
+    for (i, place) in places.chunks_exact_mut(width).enumerate() {
+        for (d, row) in to_pivots.iter_mut().zip(squares.chunks_exact(n)) {
+            *d = row[i];
+        }
+        frame.place(&to_pivots, place);
+    }
+    PointCloud::new(width, places)
+}
+
 /// Points each of which is farthest from those before, and their squared distances to all points.
 fn spread<S: Scalar>(
     metric: &dyn MetricSpace<Scalar = S>,
 ) -> Result<(Vec<usize>, Vec<f64>), Error> {
     let n = metric.len();
+    if n == 0 {
+        return Err(Error::Shape {
+            found: "no point".into(),
+            expected: "at least 1".into(),
+        });
+    }
     let all: Vec<usize> = (0..n).collect();
     let mut pivots = Vec::new();
     let mut squares = Vec::new();
