@@ -216,7 +216,7 @@ impl Compare {
                 match (self.graph.graph_eps, self.graph.graph_k) {
                     (Some(radius), _) => format!("points nearer than {radius}"),
                     (None, Some(count)) => format!("the {count} nearest points"),
-                    (None, None) => "the 16 nearest points".into(),
+                    (None, None) => "the 30 nearest points".into(),
                 },
             ),
             (

@@ -12,7 +12,7 @@ pub struct GraphArguments {
     #[arg(long, value_name = "E", value_parser = positive, conflicts_with = "graph_k")]
     pub graph_eps: Option<f64>,
 
-    /// Join every point to so many nearest ones in the graph of geodesic distances [default: 16]
+    /// Join every point to so many nearest ones in the graph of geodesic distances [default: 30]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
     pub graph_k: Option<u32>,
 

@@ -17,10 +17,11 @@ const ROUNDS: usize = 3;
 /// Where sheets cross, the principal directions of a neighborhood belong to neither: here the plane
 /// has to go through the point itself. Of the planes through the point and two of its `count`
 /// nearest others the one is taken that most of them are near (least sum of squared distances, cut
-/// off at a tenth of the radius), and fitted to those near it. A point within the thickness of
+/// off at a tenth of the radius); of that plane and those of the neighbors, moved to the point, again
+/// the best, fitted to the points near it. A point within the thickness of
 /// both sheets may get the plane of either, and is as good a sample of the one as of the other.
 ///
-/// `O(count N)` a plane, 48 planes a point; the planes tried are always the same.
+/// `O(count N)` a plane, 48 + `count` planes a point; the planes tried are always the same.
 ///
 /// # Errors
 /// [`Error::Parameter`] for fewer than 6 points, [`Error::Shape`] when oracle and cloud differ in
@@ -61,36 +62,40 @@ pub fn tangent_planes<S: Scalar>(
             expected: format!("at least {LEAST}"),
         });
     }
-    let planes = execute::map(execute, cloud.len(), Scratch::default, |scratch, i| {
-        oracle.nearest(i, count.saturating_add(1), &mut scratch.near);
-        let near = &scratch.near;
-        scratch.rows.clear();
-        let apart = |row: usize| cloud.squared_distance(i, row) > 0.0;
-        (scratch.rows).extend(near.iter().map(|x| x.index).filter(|&r| apart(r)));
-        let found = scratch.rows.len();
-        let reach = near.last().map_or(0.0, |x| x.distance.as_f64());
-        plane(cloud, i, scratch, reach).ok_or(Error::SparseNeighborhood {
+    let own = execute::map(execute, cloud.len(), Scratch::default, |scratch, i| {
+        scratch.look(cloud, oracle, i, count);
+        plane(scratch).ok_or(Error::SparseNeighborhood {
             point: i,
-            found,
+            found: scratch.rows.len(),
             needed: LEAST,
             parameter: "the number of points of a tangent plane",
         })
     });
-    let mut bases = Vec::with_capacity(cloud.len() * 2 * n);
-    for plane in planes {
-        bases.extend(plane?.into_iter().map(S::of));
-    }
-    Ok(bases)
+    let own = own.into_iter().collect::<Result<Vec<Basis>, Error>>()?;
+    let planes = execute::map(execute, cloud.len(), Scratch::default, |scratch, i| {
+        scratch.look(cloud, oracle, i, count);
+        among_neighbors(cloud, i, scratch, &own)
+    });
+    let numbers = planes.into_iter().flatten().flatten();
+    Ok(numbers.map(S::of).collect())
 }
 
 /// Fewest points that a plane is sought among.
 const LEAST: usize = 6;
 
+/// Two orthonormal vectors.
+type Basis = [Vec<f64>; 2];
+
+/// The neighbors of a point.
 struct Scratch<S> {
     near: Vec<crosscap_core::Neighbor<S>>,
+    /// Those that do not coincide with it, nearest first.
     rows: Vec<usize>,
-    /// The neighbors relative to the point.
+    /// Their places relative to it, N numbers each.
     arms: Vec<f64>,
+    space: usize,
+    /// Square of the distance from a plane up to which they are on its sheet.
+    limit: f64,
 }
 
 impl<S> Default for Scratch<S> {
@@ -99,49 +104,93 @@ impl<S> Default for Scratch<S> {
             near: Vec::new(),
             rows: Vec::new(),
             arms: Vec::new(),
+            space: 0,
+            limit: 0.0,
         }
     }
 }
 
-fn plane<S: Scalar>(
-    cloud: &PointCloud<S>,
-    i: usize,
-    scratch: &mut Scratch<S>,
-    reach: f64,
-) -> Option<Vec<f64>> {
-    let n = cloud.dimension();
+impl<S: Scalar> Scratch<S> {
+    fn look(
+        &mut self,
+        cloud: &PointCloud<S>,
+        oracle: &dyn NeighborhoodOracle<Scalar = S>,
+        i: usize,
+        count: usize,
+    ) {
+        oracle.nearest(i, count.saturating_add(1), &mut self.near);
+        let reach = self.near.last().map_or(0.0, |x| x.distance.as_f64());
+        self.limit = (THICKNESS * reach).powi(2);
+        self.space = cloud.dimension();
+        self.rows.clear();
+        self.arms.clear();
+        for x in &self.near {
+            if cloud.squared_distance(i, x.index) > 0.0 {
+                self.rows.push(x.index);
+                let pairs = cloud.point(x.index).iter().zip(cloud.point(i));
+                self.arms
+                    .extend(pairs.map(|(a, b)| a.as_f64() - b.as_f64()));
+            }
+        }
+    }
+
+    fn arm(&self, k: usize) -> &[f64] {
+        &self.arms[k * self.space..(k + 1) * self.space]
+    }
+
+    /// Sum of the squared distances of all neighbors from a plane, each cut off at the limit.
+    fn cost(&self, basis: &Basis) -> f64 {
+        (0..self.rows.len())
+            .map(|k| off(self.arm(k), basis).min(self.limit))
+            .sum()
+    }
+}
+
+/// The best of the planes through two neighbors.
+fn plane<S: Scalar>(scratch: &Scratch<S>) -> Option<Basis> {
     let count = scratch.rows.len();
     if count < LEAST {
         return None;
     }
-    scratch.arms.clear();
-    for &row in &scratch.rows {
-        let pairs = cloud.point(row).iter().zip(cloud.point(i));
-        scratch
-            .arms
-            .extend(pairs.map(|(a, b)| a.as_f64() - b.as_f64()));
-    }
-    let arm = |k: usize| &scratch.arms[k * n..(k + 1) * n];
-    let limit = (THICKNESS * reach).powi(2);
-    let mut best: Option<(f64, [Vec<f64>; 2])> = None;
+    let mut best: Option<(f64, Basis)> = None;
     for trial in 0..TRIALS {
         // The first arm runs through the farther half, the second through all others.
         let a = count - 1 - trial % count.div_ceil(2);
         let b = (a + 1 + (trial * 7 + trial / 5) % (count - 1)) % count;
-        let Some(basis) = orthonormal(arm(a), arm(b)) else {
+        let Some(basis) = orthonormal(scratch.arm(a), scratch.arm(b)) else {
             continue;
         };
-        let cost: f64 = (0..count).map(|k| off(arm(k), &basis).min(limit)).sum();
+        let cost = scratch.cost(&basis);
         if best.as_ref().is_none_or(|x| cost < x.0) {
             best = Some((cost, basis));
         }
     }
-    let (_, mut basis) = best?;
-    let mut on_sheet: Vec<usize> = Vec::with_capacity(count + 1);
+    best.map(|x| x.1)
+}
+
+/// The best of the planes of a point and of its neighbors, moved to the point and fitted to what is
+/// near it: on a crossing a neighbor a little off it has the better view.
+fn among_neighbors<S: Scalar>(
+    cloud: &PointCloud<S>,
+    i: usize,
+    scratch: &Scratch<S>,
+    own: &[Basis],
+) -> Basis {
+    let candidates = scratch.rows.iter().map(|&row| &own[row]);
+    let mut basis = &own[i];
+    let mut least = scratch.cost(basis);
+    for candidate in candidates {
+        let cost = scratch.cost(candidate);
+        if cost < least {
+            (basis, least) = (candidate, cost);
+        }
+    }
+    let mut basis = basis.clone();
+    let mut on_sheet: Vec<usize> = Vec::with_capacity(scratch.rows.len() + 1);
     for _ in 0..ROUNDS {
         on_sheet.clear();
         on_sheet.push(i);
-        let near = (0..count).filter(|&k| off(arm(k), &basis) < limit);
+        let near = (0..scratch.rows.len()).filter(|&k| off(scratch.arm(k), &basis) < scratch.limit);
         on_sheet.extend(near.map(|k| scratch.rows[k]));
         let frame = PrincipalFrame::of(cloud, on_sheet.iter().copied());
         if on_sheet.len() < 4 || frame.rank() < 2 {
@@ -150,20 +199,24 @@ fn plane<S: Scalar>(
         let Some(fitted) = orthonormal(frame.axis(0), frame.axis(1)) else {
             break;
         };
+        // A fit that is worse has taken in the other sheet.
+        if scratch.cost(&fitted) > scratch.cost(&basis) {
+            break;
+        }
         basis = fitted;
     }
-    Some(basis.concat())
+    basis
 }
 
 /// Squared distance of the end of an arm from a plane through its beginning.
-fn off(arm: &[f64], [u, v]: &[Vec<f64>; 2]) -> f64 {
+fn off(arm: &[f64], [u, v]: &Basis) -> f64 {
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
     let (p, q) = (dot(arm, u), dot(arm, v));
     (dot(arm, arm) - p * p - q * q).max(0.0)
 }
 
 /// `None` for vectors that are nearly parallel.
-fn orthonormal(a: &[f64], b: &[f64]) -> Option<[Vec<f64>; 2]> {
+fn orthonormal(a: &[f64], b: &[f64]) -> Option<Basis> {
     let unit = |x: Vec<f64>, least: f64| {
         let length = x.iter().map(|c| c * c).sum::<f64>().sqrt();
         (length > least).then(|| x.into_iter().map(|c| c / length).collect::<Vec<f64>>())

@@ -14,6 +14,8 @@ mod constant;
 mod flat;
 mod nearest;
 mod oracle;
+#[cfg(test)]
+mod tests;
 
 pub use constant::ConstantRadius;
 pub use flat::FlatRadius;
