@@ -137,6 +137,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         surface: false,
         boundary: Vec::new(),
         dt: 0.05,
+        radii: None,
     })?;
     let (dl, selector) = (0.4, RandomGreedy::new());
     let options = StratifyOptions {

@@ -3,12 +3,19 @@
 //! This crate is the facade: the [`Pipeline`] puts the parts of the workspace together with good
 //! defaults, the [`prelude`] names what one needs every day, and the modules below lead to everything else.
 
+pub mod comparison;
+mod given;
 pub mod pipeline;
+mod spaces;
+mod watched;
 
 pub use crosscap_algorithms as algorithms;
 pub use crosscap_backends as backends;
 pub use crosscap_core as core;
+pub use given::GivenSpace;
 pub use pipeline::{Method, Outcome, Parameters, Pipeline, Report, Stage};
+pub use spaces::{MetricName, Neighborhoods, Spaces, Warning};
+pub use watched::Distortion;
 
 /// What a reconstruction needs, in one line.
 pub mod prelude {

@@ -1,23 +1,33 @@
 //! From a point cloud to a verified surface: the parts put together with good defaults.
 
+use crate::given::GivenSpace;
+use crate::spaces::{
+    Custom, Engines, MetricName, Neighborhoods, Spaces, Warning, custom, positions,
+};
+use crate::watched::{Distortion, Watched};
 use crosscap_algorithms::certificate::{
-    Certificate, CertificateOptions, LinkKind, SpecialPoint, Verdict, certify,
+    Certificate, CertificateOptions, LinkKind, SpecialPoint, Verdict, certify, certify_by_distances,
 };
 use crosscap_algorithms::chart::ClassicalScaling;
+use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::homology::{Homology, homology};
 use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::moments::MomentTree;
+use crosscap_algorithms::neighborhood::{
+    FlatRadius, NearestCount, NeighborhoodPolicy, PolicyOracle, Surroundings,
+};
 use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::ModelName;
 use crosscap_algorithms::stratify::{
-    Analysis, AnalysisOptions, Analyzer, Dimensions, Published, Role, Stratification,
+    Analysis, AnalysisOptions, Analyzer, ChartSpace, Dimensions, Published, Role, Stratification,
     StratifyCounts, StratifyOptions, stratify,
 };
 use crosscap_algorithms::triangulate::{
     LargestAngle, MinimumCircumradius, Rules, Triangulation, TriangulationCounts, Triangulator,
 };
 use crosscap_backends::euclidean::EuclideanOracle;
+use crosscap_backends::geodesic::GraphReport;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{
     CompatibilityTest, Complex, CurveEdge, DimensionEstimator, Error, LandmarkSelector, LocalChart,
@@ -93,6 +103,9 @@ pub struct Parameters {
     pub models: Vec<ModelName>,
     /// Which algorithm.
     pub method: Method,
+    /// Metrics and neighborhoods.
+    #[serde(skip_serializing_if = "Spaces::are_usual")]
+    pub spaces: Spaces,
     /// Number of threads, all processors when left out; changes no result.
     pub threads: Option<usize>,
 }
@@ -112,6 +125,7 @@ impl Parameters {
             boundary: Vec::new(),
             models: vec![ModelName::TwoPlanes],
             method: Method::default(),
+            spaces: Spaces::default(),
             threads: None,
         }
     }
@@ -126,6 +140,7 @@ impl Parameters {
     pub fn chart_radius(&self) -> f64 {
         let usual = CHART_SEPARATIONS * self.dl;
         match self.method {
+            Method::Cells if self.spaces.wide_charts => self.tri_eps.unwrap_or(usual),
             Method::Cells => self.tri_eps.map_or(usual, |radius| radius.min(usual)),
             Method::Paper => self.tri_eps.unwrap_or(self.eps),
         }
@@ -172,7 +187,7 @@ impl Parameters {
                 "less than eps: the band of the curve lies inside the neighborhood",
             );
         }
-        Ok(())
+        self.spaces.check()
     }
 }
 
@@ -245,6 +260,17 @@ pub struct Report {
     pub added_landmarks: usize,
     /// Visits and repairs.
     pub triangulation: TriangulationCounts,
+    /// How much the charts lose.
+    pub chart_distortion: Distortion,
+    /// The graph of geodesic distances, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub graph: Option<GraphReport>,
+    /// What became of distances that were the only input.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub given: Option<GivenSpace>,
+    /// What may be wrong although nothing failed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
     /// Seconds spent in each stage, in order.
     pub seconds: Vec<(Stage, f64)>,
 }
@@ -275,6 +301,8 @@ impl Outcome {
 
 /// Called at the beginning of every stage.
 type StageObserver = Box<dyn FnMut(Stage)>;
+/// Called for every warning.
+type WarningObserver = Box<dyn FnMut(&Warning)>;
 
 /// A reconstruction put together from parts, each of which can be replaced.
 ///
@@ -294,8 +322,10 @@ pub struct Pipeline<S: Scalar = f64> {
     chart: Box<dyn LocalChart>,
     test: Box<dyn CompatibilityTest>,
     rule: Box<dyn TriangleRule>,
-    metric: Option<Box<dyn MetricSpace<Scalar = S>>>,
+    analysis_metric: Option<Custom<S>>,
+    chart_metric: Option<Custom<S>>,
     observer: StageObserver,
+    warned: WarningObserver,
 }
 
 impl<S: Scalar> Pipeline<S> {
@@ -317,8 +347,10 @@ impl<S: Scalar> Pipeline<S> {
             chart: Box::new(ClassicalScaling),
             test: Box::new(PlanarPredicate),
             rule: Box::new(LargestAngle),
-            metric: None,
+            analysis_metric: None,
+            chart_metric: None,
             observer: Box::new(|_| {}),
+            warned: Box::new(|_| {}),
             parameters,
         })
     }
@@ -360,9 +392,17 @@ impl<S: Scalar> Pipeline<S> {
         self
     }
 
-    /// Distances for the triangulation other than the Euclidean ones, on the rows of the input.
+    /// A metric of your own for the analysis, on the rows of the input: neighborhoods, landmarks, cells.
+    /// Neighborhoods are found by looking at every point. Coordinates still come from the cloud.
+    pub fn analysis_metric(mut self, metric: Box<dyn MetricSpace<Scalar = S>>) -> Self {
+        self.analysis_metric = Some(Custom::new(metric));
+        self
+    }
+
+    /// A metric of your own for the charts, on the rows of the input: which landmarks are in a chart, and
+    /// the distances that it is laid out from.
     pub fn triangulation_metric(mut self, metric: Box<dyn MetricSpace<Scalar = S>>) -> Self {
-        self.metric = Some(metric);
+        self.chart_metric = Some(Custom::new(metric));
         self
     }
 
@@ -372,12 +412,32 @@ impl<S: Scalar> Pipeline<S> {
         self
     }
 
+    /// Calls `observer` for every warning as soon as it is known, also where there is no outcome later.
+    pub fn on_warning(mut self, observer: impl FnMut(&Warning) + 'static) -> Self {
+        self.warned = Box::new(observer);
+        self
+    }
+
     /// Reconstructs the surface that `cloud` was sampled from.
     ///
     /// # Errors
     /// Input that cannot be worked on ([`Error::is_input`]), or a stage that failed before there was
     /// a mesh. A mesh that is not good comes back in the outcome, unverified.
     pub fn reconstruct(&mut self, cloud: &PointCloud<S>) -> Result<Outcome, Error> {
+        self.run(cloud, None)
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// With `given` distances, those of the places of the cloud are used for nothing.
+    pub(crate) fn run(
+        &mut self,
+        cloud: &PointCloud<S>,
+        given: Option<ChartSpace<'_, S>>,
+    ) -> Result<Outcome, Error> {
         let mut clock = Clock::default();
         let parameters = self.parameters.clone();
         self.enter(Stage::Index, &mut clock);
@@ -390,7 +450,10 @@ impl<S: Scalar> Pipeline<S> {
         let kept = first_of_each(cloud);
         let duplicates = cloud.len() - kept.len();
         let whole = cloud;
-        let (cloud, rows) = if duplicates == 0 || self.metric.is_some() {
+        // The metric knows the rows as they are, copies included.
+        let own_metric =
+            given.is_some() || self.analysis_metric.is_some() || self.chart_metric.is_some();
+        let (cloud, rows) = if duplicates == 0 || own_metric {
             (cloud.clone(), (0..cloud.len()).collect())
         } else {
             (cloud.select(&kept), kept)
@@ -403,24 +466,40 @@ impl<S: Scalar> Pipeline<S> {
         }
         let boundary = boundary_rows(&parameters.boundary, &rows, whole)?;
         let threads = Threads::new(parameters.threads.unwrap_or(0))?;
-        let oracle = EuclideanOracle::new(cloud.clone())?;
+        let flat_dimension = cloud.dimension();
+        let engines = Engines::new(&parameters.spaces, parameters.eps, &cloud, &threads)?;
+        let warnings = engines.warnings();
+        warnings.iter().for_each(|warning| self.warn(warning));
 
         self.enter(Stage::Neighborhoods, &mut clock);
-        let known = match self.estimator {
-            None if !parameters.surface => MomentTree::new(&cloud)?.settled_dimensions(
-                parameters.eps,
-                parameters.dt,
-                &threads,
-            )?,
-            _ => Vec::new(),
-        };
+        // From here on the points as the analysis sees them.
+        let cloud = &engines.cloud;
+        let oracle = &engines.euclidean;
+        let own_space = given.or(self.analysis_metric.as_ref().map(custom));
+        let space = own_space.unwrap_or_else(|| engines.analysis());
+        let own_charts = self.chart_metric.as_ref().map(custom).or(given);
+        let charts = own_charts.or_else(|| engines.charts());
+        // Balls of one radius in straight lines are what the moments are of.
+        let usual = self.analysis_metric.is_none()
+            && parameters.spaces.metric != MetricName::Geodesic
+            && parameters.spaces.neighborhoods == Neighborhoods::Radius;
+        let known =
+            match self.estimator {
+                None if !parameters.surface && usual => MomentTree::new(cloud)?
+                    .settled_dimensions(parameters.eps, parameters.dt, &threads)?,
+                _ => Vec::new(),
+            };
+        let principal = PrincipalComponents::new(parameters.dt)?;
+        let estimator: &dyn DimensionEstimator<Scalar = S> =
+            self.estimator.as_deref().unwrap_or(&principal);
         let analyzer = Analyzer {
-            cloud: &cloud,
-            metric: &oracle,
-            oracle: &oracle,
-            dimensions: match &self.estimator {
-                Some(estimator) => Dimensions::Estimator(estimator.as_ref()),
-                None => Dimensions::Known(&known),
+            cloud,
+            metric: space.metric,
+            oracle: space.oracle,
+            dimensions: if known.is_empty() {
+                Dimensions::Estimator(estimator)
+            } else {
+                Dimensions::Known(&known)
             },
             models: &self.models,
             execute: &threads,
@@ -439,6 +518,7 @@ impl<S: Scalar> Pipeline<S> {
             Some(published) => published.analyze(&analyzer)?,
             None => analyzer.analyze(&AnalysisOptions {
                 eps: parameters.eps,
+                radii: radii(&parameters, &space, cloud, estimator, &threads)?,
                 surface: parameters.surface,
                 boundary,
                 dt: parameters.dt,
@@ -447,6 +527,7 @@ impl<S: Scalar> Pipeline<S> {
 
         let mut extra: Vec<usize> = Vec::new();
         let mut observer = std::mem::replace(&mut self.observer, Box::new(|_| {}));
+        let watched = Watched::new(self.chart.as_ref());
         let (analysis, stratification, triangulation) = loop {
             clock.enter(Stage::Landmarks);
             observer(Stage::Landmarks);
@@ -455,14 +536,14 @@ impl<S: Scalar> Pipeline<S> {
                 Some(published) => published.stratify(
                     &analyzer,
                     &analysis,
-                    self.metric.as_deref(),
+                    charts.as_ref().map(|charts| charts.metric),
                     self.selector.as_ref(),
                     self.chart.as_ref(),
                 )?,
                 None => stratify(
                     &analyzer,
                     &mut analysis,
-                    self.metric.as_deref(),
+                    charts.as_ref(),
                     self.selector.as_ref(),
                     &StratifyOptions {
                         dl: parameters.dl,
@@ -475,16 +556,16 @@ impl<S: Scalar> Pipeline<S> {
             clock.enter(Stage::Triangulation);
             observer(Stage::Triangulation);
             let triangulation = self
-                .triangulator()
+                .triangulator(&watched)
                 .triangulate(&stratification.waist)
                 .map_err(|error| at_input_row(error, &stratification.rows, &rows))?;
             let before = extra.len();
             // What cannot be triangulated is not mended by more landmarks.
             let sound = triangulation.incomplete.len() * 100 <= stratification.rows.len();
             let rounds = clock.rounds(Stage::Triangulation);
-            if sound && literal.is_none() && rounds <= REFINEMENTS {
+            if sound && literal.is_none() && given.is_none() && rounds <= REFINEMENTS {
                 add_where_astray(
-                    &oracle,
+                    oracle,
                     &analysis,
                     &stratification,
                     &triangulation.complex,
@@ -497,6 +578,7 @@ impl<S: Scalar> Pipeline<S> {
             }
         };
         self.observer = observer;
+        let chart_distortion = watched.distortion();
 
         self.enter(Stage::Homology, &mut clock);
         let mesh = mesh_of(&triangulation.complex, &stratification, &analysis, &rows)?;
@@ -509,18 +591,20 @@ impl<S: Scalar> Pipeline<S> {
             .iter()
             .map(|&k| rows[stratification.rows[k as usize]])
             .collect();
-        let certificate = certify(
-            &mesh,
-            &CertificateOptions {
-                points: Some(&points),
-                landmark_separation: Some(parameters.dl),
-                unused_landmarks: &unused,
-                special_points: &special_points(&mesh, &stratification, &rows),
-                closed: parameters.boundary.is_empty()
-                    && !self.models.iter().any(|m| m.finds_boundary()),
-                ..CertificateOptions::default()
-            },
-        );
+        let special = special_points(&mesh, &stratification, &rows);
+        let options = CertificateOptions {
+            points: Some(&points),
+            landmark_separation: Some(parameters.dl),
+            unused_landmarks: &unused,
+            special_points: &special,
+            closed: parameters.boundary.is_empty()
+                && !self.models.iter().any(|m| m.finds_boundary()),
+            ..CertificateOptions::default()
+        };
+        let certificate = match &given {
+            None => certify(&mesh, &options),
+            Some(space) => certify_by_distances(&mesh, space.metric, space.oracle, &options),
+        };
         // A star that stayed open in its own chart may be complete all the same; whether it is, the
         // certificate has seen edge by edge and link by link.
         let complete = literal.is_none() && matches!(certificate.verdict(), Verdict::Verified);
@@ -537,7 +621,7 @@ impl<S: Scalar> Pipeline<S> {
         let report = Report {
             version: env!("CARGO_PKG_VERSION"),
             points: whole.len(),
-            dimension: cloud.dimension(),
+            dimension: flat_dimension,
             duplicates,
             estimator: (!parameters.surface).then(|| {
                 let own = self.estimator.as_ref().map(|e| e.name().to_string());
@@ -550,8 +634,16 @@ impl<S: Scalar> Pipeline<S> {
             landmarks: stratification.counts,
             added_landmarks: extra.len(),
             triangulation: triangulation.counts,
+            chart_distortion,
+            graph: engines.graph().cloned(),
+            given: None,
+            warnings,
             seconds: clock.finish(),
             parameters,
+        };
+        let mesh = Mesh {
+            vertices: positions(&mesh.vertices, flat_dimension)?,
+            ..mesh
         };
         Ok(Outcome {
             failures,
@@ -568,13 +660,13 @@ impl<S: Scalar> Pipeline<S> {
     /// # Errors
     /// Those of [`Triangulator::triangulate`].
     pub fn triangulate(&self, waist: &StratifiedLandmarks<S>) -> Result<Triangulation, Error> {
-        self.triangulator().triangulate(waist)
+        self.triangulator(self.chart.as_ref()).triangulate(waist)
     }
 
-    fn triangulator(&self) -> Triangulator<'_> {
+    fn triangulator<'a>(&'a self, chart: &'a dyn LocalChart) -> Triangulator<'a> {
         let literal = self.parameters.method == Method::Paper;
         Triangulator {
-            chart: self.chart.as_ref(),
+            chart,
             test: self.test.as_ref(),
             rule: if literal {
                 &MinimumCircumradius
@@ -591,9 +683,39 @@ impl<S: Scalar> Pipeline<S> {
         }
     }
 
+    pub(crate) fn warn(&mut self, warning: &Warning) {
+        (self.warned)(warning);
+    }
+
     fn enter(&mut self, stage: Stage, clock: &mut Clock) {
         clock.enter(stage);
         (self.observer)(stage);
+    }
+}
+
+/// The radii of the neighborhoods, where they are not eps everywhere.
+fn radii<S: Scalar>(
+    parameters: &Parameters,
+    space: &ChartSpace<'_, S>,
+    cloud: &PointCloud<S>,
+    estimator: &dyn DimensionEstimator<Scalar = S>,
+    threads: &Threads,
+) -> Result<Option<Vec<f64>>, Error> {
+    let around = Surroundings {
+        oracle: space.oracle,
+        metric: space.metric,
+        cloud: Some(cloud),
+        execute: threads,
+    };
+    let of = |policy: &dyn NeighborhoodPolicy<S>| {
+        Ok(Some(PolicyOracle::new(policy, &around)?.into_radii()))
+    };
+    match parameters.spaces.neighborhoods {
+        // Nothing is looked for in neighborhoods.
+        _ if parameters.surface => Ok(None),
+        Neighborhoods::Radius => Ok(None),
+        Neighborhoods::Nearest(count) => of(&NearestCount::new(count)?),
+        Neighborhoods::Adaptive(count) => of(&FlatRadius::new(parameters.eps, count, estimator)?),
     }
 }
 

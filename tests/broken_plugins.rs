@@ -151,6 +151,7 @@ fn analysis(
         surface: true,
         boundary: Vec::new(),
         dt: 0.05,
+        radii: None,
     };
     let analyzer = Analyzer {
         cloud: &cloud,

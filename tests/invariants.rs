@@ -311,6 +311,7 @@ fn waist_of(
     };
     let options = AnalysisOptions {
         eps: p.eps,
+        radii: None,
         surface: p.surface,
         boundary: p.boundary.clone(),
         dt: p.dt,

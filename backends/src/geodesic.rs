@@ -375,6 +375,10 @@ impl<S: Scalar> MetricSpace for GeodesicMetric<S> {
         })
     }
 
+    fn distances_to(&self, from: usize, to: &[usize], out: &mut Vec<S>) {
+        Self::distances_to(self, from, to, out);
+    }
+
     fn name(&self) -> &str {
         "geodesic"
     }

@@ -27,6 +27,11 @@ impl Threads {
             })
     }
 
+    /// Runs `work` with these threads: what it runs in parallel, it runs on them.
+    pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.0.install(work)
+    }
+
     /// Number of threads.
     pub fn count(&self) -> usize {
         self.0.current_num_threads()

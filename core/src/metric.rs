@@ -9,7 +9,8 @@ use crate::Scalar;
 /// - *identity*: `distance(a, a) == 0` and distances are at least 0;
 /// - *symmetry*: `distance(a, b) == distance(b, a)`, to the bit;
 /// - *triangle inequality*: `distance(a, c) <= distance(a, b) + distance(b, c)` within rounding;
-/// - *never NaN*; infinity says that no path joins the two points.
+/// - *never NaN*; infinity says that no path joins the two points;
+/// - *many at once*: [`MetricSpace::distances_to`] gives what `distance` gives, to the bit.
 ///
 /// Distances are in the unit of the data. An implementation over coordinates need
 /// not be a norm: a graph distance, a distance on a torus or a measured matrix serve as well.
@@ -31,6 +32,17 @@ pub trait MetricSpace: Sync {
     /// May panic when an index is not below [`MetricSpace::len`].
     fn distance(&self, a: usize, b: usize) -> Self::Scalar;
 
+    /// Writes the distance from `from` to each of `to` into `out`, in their order; the former
+    /// content of `out` is dropped. One `distance` each unless an implementation knows better: a
+    /// search through a graph finds them all at once.
+    ///
+    /// # Panics
+    /// May panic when an index is not below [`MetricSpace::len`].
+    fn distances_to(&self, from: usize, to: &[usize], out: &mut Vec<Self::Scalar>) {
+        out.clear();
+        out.extend(to.iter().map(|&point| self.distance(from, point)));
+    }
+
     /// Short name for reports.
     fn name(&self) -> &str;
 }
@@ -42,6 +54,25 @@ impl<M: MetricSpace + ?Sized> MetricSpace for &M {
     }
     fn distance(&self, a: usize, b: usize) -> Self::Scalar {
         (**self).distance(a, b)
+    }
+    fn distances_to(&self, from: usize, to: &[usize], out: &mut Vec<Self::Scalar>) {
+        (**self).distances_to(from, to, out);
+    }
+    fn name(&self) -> &str {
+        (**self).name()
+    }
+}
+
+impl<M: MetricSpace + ?Sized> MetricSpace for Box<M> {
+    type Scalar = M::Scalar;
+    fn len(&self) -> usize {
+        (**self).len()
+    }
+    fn distance(&self, a: usize, b: usize) -> Self::Scalar {
+        (**self).distance(a, b)
+    }
+    fn distances_to(&self, from: usize, to: &[usize], out: &mut Vec<Self::Scalar>) {
+        (**self).distances_to(from, to, out);
     }
     fn name(&self) -> &str {
         (**self).name()

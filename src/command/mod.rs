@@ -1,6 +1,8 @@
 //! Commands, one a file, and what they share.
 
 mod check;
+mod compare;
+mod compare_plot;
 mod convert;
 mod demo;
 mod dimension;
@@ -16,6 +18,7 @@ mod picture;
 mod points;
 mod reconstruct;
 mod sample;
+mod spaces;
 mod terminal;
 mod view;
 
@@ -60,6 +63,7 @@ enum Command {
     Reconstruct(Box<reconstruct::Reconstruct>),
     Check(check::Check),
     Dimension(dimension::Dimension),
+    Compare(compare::Compare),
     View(view::View),
     Convert(convert::Convert),
     Paper(paper::Paper),
@@ -84,6 +88,7 @@ pub fn run() -> ExitCode {
         Command::Reconstruct(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Dimension(command) => command.run(),
+        Command::Compare(command) => command.run(),
         Command::View(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Paper(command) => command.run(),

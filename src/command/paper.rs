@@ -6,6 +6,7 @@ use super::number::{betti, median};
 use super::parameters::{DIMENSION_TOLERANCE, MethodName, curve_tolerance, fit_tolerance, threads};
 use super::terminal::{Progress, complain, say};
 use clap::Args;
+use crosscap::Spaces;
 use crosscap::pipeline::{Parameters, Pipeline};
 use crosscap_algorithms::surfaces::{PaperExample, SampleSurface, catalogue};
 use crosscap_backends::euclidean::EuclideanOracle;
@@ -254,6 +255,7 @@ pub fn paper_parameters(
         surface: paper.surface,
         boundary,
         method: method.into(),
+        spaces: Spaces::default(),
         threads,
         ..Parameters::new(eps, paper.landmark_separation)
     }

@@ -3,6 +3,7 @@
 use super::estimators::EstimatorName;
 use super::failure::Failure;
 use super::number::{positive, share};
+use super::spaces::SpaceArguments;
 use clap::{Args, ValueEnum};
 use crosscap::pipeline::{Method, Parameters};
 use crosscap_algorithms::singularity::ModelName;
@@ -118,6 +119,9 @@ pub struct ParameterArguments {
     #[arg(long, value_name = "NAME", value_enum, default_value_t)]
     pub method: MethodName,
 
+    #[command(flatten)]
+    pub spaces: SpaceArguments,
+
     /// Number of threads, 0 for all processors; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
@@ -161,6 +165,7 @@ impl ParameterArguments {
             boundary,
             models: self.models.0.clone(),
             method: self.method.into(),
+            spaces: self.spaces.spaces(),
             threads: threads(self.threads),
         })
     }

@@ -9,10 +9,12 @@ use super::points::PointArguments;
 use super::terminal::{Progress, complain, say};
 use super::{output, picture};
 use clap::Args;
+use crosscap::GivenSpace;
 use crosscap::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap_algorithms::certificate::Verdict;
 use crosscap_backends::files::{
-    AnyCloud, MESH_EXTENSIONS, MeshExtras, read_indices, write_bytes_whole, write_mesh,
+    AnyCloud, Distances, MESH_EXTENSIONS, MeshExtras, read_distances, read_indices,
+    write_bytes_whole, write_mesh,
 };
 use crosscap_core::{Error, PointCloud, Scalar};
 use serde_json::{Value, json};
@@ -39,8 +41,15 @@ const REASONS: usize = 8;
 #[command(after_long_help = EXAMPLES)]
 pub struct Reconstruct {
     /// Points: .npy, .npz, .csv, .txt, .xyz, .pdb, .ply or .mat, one point a row
-    #[arg(value_name = "POINTS")]
-    points: PathBuf,
+    #[arg(value_name = "POINTS", required_unless_present = "distances")]
+    points: Option<PathBuf>,
+
+    /// Distances instead of points: .npy (n x n) or .npz (sparse, as SciPy's save_npz writes it)
+    ///
+    /// Distances of points in a Euclidean space give these points back, up to a motion. Other distances are taken as
+    /// they are: they need --surface, and what needs coordinates is not checked.
+    #[arg(long, value_name = "DISTANCES", conflicts_with = "points")]
+    distances: Option<PathBuf>,
 
     /// Mesh to write: .npz (keeps everything), .vtu, .ply, .obj or .off
     #[arg(short, long, value_name = "MESH")]
@@ -75,18 +84,27 @@ impl Reconstruct {
         // Refuse what can be refused before the work begins.
         self.parameters.parameters(Vec::new())?;
         self.check_outputs()?;
-        let cloud = self.choice.read(&self.points)?;
-        if cloud.len() < LEAST_POINTS {
+        let input = match &self.distances {
+            Some(path) => Input::Distances(read_distances(path)?),
+            None => Input::Points(self.choice.read(self.input())?),
+        };
+        if input.len() < LEAST_POINTS {
             return Err(Failure::usage(format!(
                 "{}: found {}, expected at least {LEAST_POINTS}, what one neighborhood needs",
-                self.points.display(),
-                counted(cloud.len(), "point")
+                self.input().display(),
+                counted(input.len(), "point")
             )));
         }
         let parameters = self
             .parameters
-            .parameters(self.boundary_rows(cloud.len())?)?;
-        let outcome = reconstruct_by(&cloud, parameters.clone(), self.parameters.estimator)?;
+            .parameters(self.boundary_rows(input.len())?)?;
+        let outcome = match &input {
+            Input::Points(cloud) => {
+                reconstruct_by(cloud, parameters.clone(), self.parameters.estimator)?
+            }
+            Input::Distances(distances) => observed(parameters.clone(), self.parameters.estimator)?
+                .reconstruct_distances(distances)?,
+        };
         let verified = outcome.is_verified();
         if !verified {
             for reason in reasons(&outcome) {
@@ -95,11 +113,11 @@ impl Reconstruct {
             if !self.keep_unverified {
                 return Err(Failure::NotVerified(format!(
                     "{}: no verified mesh, nothing written (--keep-unverified writes it as it is)",
-                    self.points.display()
+                    self.input().display()
                 )));
             }
         }
-        self.write(&cloud, &parameters, &outcome)?;
+        self.write(&input, &parameters, &outcome)?;
         if verified {
             Ok(())
         } else {
@@ -108,6 +126,13 @@ impl Reconstruct {
                 self.output.display()
             )))
         }
+    }
+
+    /// The file with the points or their distances.
+    fn input(&self) -> &Path {
+        // One of the two is there: the definition of the arguments says so.
+        let given = self.points.as_deref().or(self.distances.as_deref());
+        given.unwrap_or(Path::new(""))
     }
 
     fn check_outputs(&self) -> Result<(), Failure> {
@@ -121,7 +146,7 @@ impl Reconstruct {
             output::check(picture, output::PICTURES)?;
             outputs.push(picture);
         }
-        let mut inputs = vec![self.points.as_path()];
+        let mut inputs = vec![self.input()];
         inputs.extend(self.boundary.as_deref());
         output::distinct(&inputs, &outputs)
     }
@@ -137,7 +162,7 @@ impl Reconstruct {
                 path.display(),
                 rows[at],
                 points - 1,
-                self.points.display()
+                self.input().display()
             )));
         }
         rows.sort_unstable();
@@ -147,25 +172,22 @@ impl Reconstruct {
 
     fn write(
         &self,
-        cloud: &AnyCloud,
+        input: &Input,
         parameters: &Parameters,
         outcome: &Outcome,
     ) -> Result<(), Failure> {
         let findings = findings(outcome);
-        let verdict = if outcome.is_verified() {
-            "verified"
-        } else {
-            "not verified"
-        };
+        let verdict = verdict(outcome);
+        let verdict = verdict.as_str();
         // What may fail comes first: the mesh is written when everything else is.
         if let Some(path) = &self.picture {
-            let scene = picture::scene(&picture::title(&self.points), &findings, verdict, None)?;
+            let scene = picture::scene(&picture::title(self.input()), &findings, verdict, None)?;
             write_bytes_whole(path, &picture::bytes(path, &scene, picture::SIZE)?)?;
         }
         if let Some(path) = &self.report {
             let input = json!({
-                "file": self.points.display().to_string(),
-                "scalar": cloud.scalar_name(),
+                "file": self.input().display().to_string(),
+                "scalar": input.scalar_name(),
             });
             write_bytes_whole(path, pretty(&report(outcome, input)).as_bytes())?;
         }
@@ -175,6 +197,7 @@ impl Reconstruct {
             format!("Betti numbers {}", findings.topology()),
             findings.description(),
         ];
+        lines.extend(outcome.report.given.as_ref().map(told));
         if let Some(count @ 1..) = duplicates(outcome) {
             lines.push(format!(
                 "{} in the input",
@@ -185,6 +208,61 @@ impl Reconstruct {
             lines.push(format!("{}: written", path.display()));
         }
         say(lines.join("\n"))
+    }
+}
+
+/// What a surface is reconstructed from.
+enum Input {
+    Points(AnyCloud),
+    Distances(Distances),
+}
+
+impl Input {
+    fn len(&self) -> usize {
+        match self {
+            Self::Points(cloud) => cloud.len(),
+            Self::Distances(distances) => distances.len(),
+        }
+    }
+
+    fn scalar_name(&self) -> &'static str {
+        match self {
+            Self::Points(cloud) => cloud.scalar_name(),
+            Self::Distances(_) => "f64",
+        }
+    }
+}
+
+/// The verdict in a line, with what it does not cover.
+fn verdict(outcome: &Outcome) -> String {
+    if !outcome.is_verified() {
+        return "not verified".into();
+    }
+    let unchecked = outcome.certificate.unchecked();
+    if unchecked.is_empty() {
+        return "verified".into();
+    }
+    let names: Vec<String> = unchecked.iter().map(ToString::to_string).collect();
+    format!(
+        "verified by distances; not checked for want of coordinates: {}",
+        names.join(", ")
+    )
+}
+
+/// What became of distances.
+fn told(given: &GivenSpace) -> String {
+    let GivenSpace {
+        dimension,
+        deviation,
+        exact,
+    } = given;
+    if *exact {
+        format!("the distances are those of points in R^{dimension}, within {deviation:.1e}")
+    } else {
+        format!(
+            "no points have these distances: the places written, in R^{dimension}, are a picture, off by up to \
+             {deviation:.1e}"
+        )
     }
 }
 
@@ -214,15 +292,27 @@ fn run<S: Scalar>(
     parameters: Parameters,
     estimator: EstimatorName,
 ) -> Result<Outcome, Error> {
+    observed(parameters, estimator)?.reconstruct(cloud)
+}
+
+/// A pipeline whose progress is shown, and its warnings as they come.
+fn observed<S: Scalar>(
+    parameters: Parameters,
+    estimator: EstimatorName,
+) -> Result<Pipeline<S>, Error> {
     let progress = Progress::new("starting");
     let shown = progress.clone();
     let dt = parameters.dt;
-    let mut pipeline = Pipeline::new(parameters)?.on_stage(move |stage| shown.stage(stage));
+    let mut pipeline = Pipeline::new(parameters)?
+        .on_stage(move |stage| shown.stage(stage))
+        .on_warning(move |warning| {
+            progress.suspend(|| complain(format_args!("warning: {warning}")));
+        });
     // The pipeline has principal components of its own, of all points together.
     if estimator != EstimatorName::Pca {
         pipeline = pipeline.estimator(estimator.local(dt)?);
     }
-    pipeline.reconstruct(cloud)
+    Ok(pipeline)
 }
 
 /// What is known about the mesh of an outcome.
@@ -257,7 +347,7 @@ pub fn write_reconstruction(
     parameters: &Parameters,
     outcome: &Outcome,
 ) -> Result<(), Failure> {
-    let metadata = json!({
+    let mut metadata = json!({
         "crosscap": env!("CARGO_PKG_VERSION"),
         "verified": outcome.is_verified(),
         "eps": parameters.eps,
@@ -272,6 +362,13 @@ pub fn write_reconstruction(
         "method": parameters.method.to_string(),
         "estimator": outcome.report.estimator,
     });
+    if let Some(given) = &outcome.report.given {
+        metadata["distances"] = json!(given);
+        metadata["unchecked"] = json!(outcome.certificate.unchecked());
+    }
+    if !parameters.spaces.are_usual() {
+        metadata["spaces"] = json!(parameters.spaces);
+    }
     let pieces = outcome.pieces.as_ref().ok();
     let extras = MeshExtras {
         metadata,

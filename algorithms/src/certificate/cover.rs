@@ -23,7 +23,7 @@ pub struct Distances {
 }
 
 impl Distances {
-    fn of(mut values: Vec<f64>) -> Self {
+    pub(super) fn of(mut values: Vec<f64>) -> Self {
         values.sort_unstable_by(f64::total_cmp);
         Self {
             count: values.len(),

@@ -84,6 +84,23 @@ impl fmt::Display for Certificate {
                 q.cells.len()
             )?;
         }
+        if let Some(d) = &self.by_distances {
+            write!(
+                f,
+                "\ndistances  {} folds (smallest angle {:.1} degrees), triangle angles from {:.1} degrees, {} landmarks unused",
+                d.folds, d.smallest_dihedral, d.smallest_angle, d.unused_landmarks
+            )?;
+            distances(f, "points to vertices", Some(&d.points_to_vertices))?;
+        }
+        let unchecked = self.unchecked();
+        if self.by_distances.is_some() && !unchecked.is_empty() {
+            let names: Vec<String> = unchecked.iter().map(ToString::to_string).collect();
+            write!(
+                f,
+                "\nunchecked  {}: these need coordinates",
+                names.join(", ")
+            )?;
+        }
         write!(f, "\nverdict    {}", self.verdict())
     }
 }

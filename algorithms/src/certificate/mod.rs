@@ -15,6 +15,7 @@
 //! Nothing here knows the true surface. What cannot be decided without it (the right Betti
 //! numbers, a handle too small for the landmarks) is not decided.
 
+mod by_distances;
 mod cover;
 mod crossing;
 mod display;
@@ -33,6 +34,7 @@ mod violation;
 #[cfg(test)]
 mod tests;
 
+pub use by_distances::{DistanceReport, certify_by_distances};
 pub use cover::{CoverReport, Distances};
 pub use edges::EdgeReport;
 pub use geometry::GeometryReport;
@@ -217,6 +219,9 @@ pub struct Certificate {
     pub cover: Option<CoverReport>,
     /// Shapes of triangles.
     pub quality: Option<QualityReport>,
+    /// What distances say instead, where there are no places.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub by_distances: Option<DistanceReport>,
 }
 
 impl Certificate {
@@ -228,6 +233,7 @@ impl Certificate {
             self.geometry.as_ref().map(|r| &r.violations),
             self.cover.as_ref().map(|r| &r.violations),
             self.quality.as_ref().map(|r| &r.violations),
+            self.by_distances.as_ref().map(|r| &r.violations),
         ];
         self.indices
             .violations
@@ -235,7 +241,21 @@ impl Certificate {
             .chain(later.into_iter().flatten().flatten())
     }
 
-    /// Whether the mesh may be handed over as good.
+    /// The levels that were not asked: those that need places, where there are distances alone, and
+    /// all later ones, where the arrays are unusable.
+    pub fn unchecked(&self) -> Vec<Level> {
+        let asked = [
+            (Level::Edges, self.edges.is_some()),
+            (Level::Links, self.links.is_some()),
+            (Level::Geometry, self.geometry.is_some()),
+            (Level::Cover, self.cover.is_some()),
+            (Level::Quality, self.quality.is_some()),
+        ];
+        let not = asked.into_iter().filter(|a| !a.1);
+        not.map(|a| a.0).collect()
+    }
+
+    /// Whether the mesh may be handed over as good, as far as its levels were asked.
     pub fn verdict(&self) -> Verdict {
         let all: Vec<Violation> = self.violations().cloned().collect();
         if all.is_empty() {
@@ -299,6 +319,7 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
         geometry: None,
         cover: None,
         quality: None,
+        by_distances: None,
     };
     if let Some(fault) = options.fault(mesh) {
         certificate.indices.violations.push(fault);

@@ -21,6 +21,19 @@ pub enum Level {
     Quality,
 }
 
+impl fmt::Display for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Indices => "indices",
+            Self::Edges => "edges",
+            Self::Links => "links",
+            Self::Geometry => "geometry",
+            Self::Cover => "cover",
+            Self::Quality => "quality",
+        })
+    }
+}
+
 /// What is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]

@@ -115,6 +115,45 @@ impl<S: Scalar> Lifted<S> {
         Ok(lifted)
     }
 
+    /// The same space as points of R^(N + N(N+1)/2), whose straight-line distances are the lifted
+    /// ones within rounding: first the N coordinates of the cloud, then the entries of the
+    /// projection on and above its diagonal, times `w` off the diagonal and `w / sqrt 2` on it.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] when the weight is so large that an entry overflows.
+    ///
+    /// ```
+    /// use crosscap_algorithms::metric::Lifted;
+    /// use crosscap_core::{MetricSpace, PointCloud};
+    /// let cloud = PointCloud::new(2, vec![0.0, 0.0, 3.0, 0.0]).unwrap();
+    /// let lifted = Lifted::new(cloud, 1, vec![1.0, 0.0, 0.0, 1.0], 4.0).unwrap();
+    /// assert_eq!(lifted.distance(0, 1), 5.0);
+    /// assert!((lifted.coordinates().unwrap().squared_distance(0, 1) - 25.0).abs() < 1e-12);
+    /// ```
+    pub fn coordinates(&self) -> Result<PointCloud<S>, Error> {
+        let n = self.cloud.dimension();
+        let width = n + n * (n + 1) / 2;
+        let mut rows = Vec::with_capacity(self.cloud.len() * width);
+        for point in 0..self.cloud.len() {
+            rows.extend_from_slice(self.cloud.point(point));
+            for a in 0..n {
+                for b in a..n {
+                    let entry: f64 = (0..self.plane_dimension)
+                        .map(|i| self.vector(point, i))
+                        .map(|v| v[a].as_f64() * v[b].as_f64())
+                        .sum();
+                    let scale = if a == b {
+                        std::f64::consts::FRAC_1_SQRT_2
+                    } else {
+                        1.0
+                    };
+                    rows.push(S::of(self.weight * scale * entry));
+                }
+            }
+        }
+        PointCloud::new(width, rows)
+    }
+
     fn vector(&self, point: usize, i: usize) -> &[S] {
         let space = self.cloud.dimension();
         let start = (point * self.plane_dimension + i) * space;

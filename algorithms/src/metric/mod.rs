@@ -13,8 +13,10 @@ mod brute_force;
 mod euclidean;
 mod given;
 mod lifted;
+mod tangent;
 
 pub use brute_force::BruteForceOracle;
 pub use euclidean::Euclidean;
 pub use given::GivenDistances;
 pub use lifted::Lifted;
+pub use tangent::tangent_planes;

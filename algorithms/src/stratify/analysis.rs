@@ -30,12 +30,22 @@ pub enum Role {
 pub struct AnalysisOptions {
     /// Radius of the neighborhoods (strict), unit of the data.
     pub eps: f64,
+    /// A radius for every point instead (strict), unit of the data: see
+    /// [`NeighborhoodPolicy`](crate::neighborhood::NeighborhoodPolicy).
+    pub radii: Option<Vec<f64>>,
     /// Take every point as 2-dimensional and look for no curve.
     pub surface: bool,
     /// Rows that lie on the boundary.
     pub boundary: Vec<usize>,
     /// Dimension tolerance dt at radii smaller than `eps`: share of variance (strict).
     pub dt: f64,
+}
+
+impl AnalysisOptions {
+    /// Radius of the neighborhood of a row.
+    pub(super) fn radius(&self, row: usize) -> f64 {
+        self.radii.as_ref().map_or(self.eps, |radii| radii[row])
+    }
 }
 
 /// The engines and models that the analysis is made with.
@@ -187,7 +197,9 @@ impl Analysis {
                     && squared_distance(self.places.point(row), &w.place) < spacing * spacing
             });
             if !covered {
-                tree.within(&w.place, spacing, |k, _| covered |= counts(there[k as usize]));
+                tree.within(&w.place, spacing, |k, _| {
+                    covered |= counts(there[k as usize])
+                });
             }
             if covered {
                 continue;
@@ -296,6 +308,14 @@ impl<S: Scalar> Analyzer<'_, S> {
                 expected: "a positive length".into(),
             });
         }
+        if let Some(radii) = &options.radii
+            && radii.len() != n
+        {
+            return Err(Error::Shape {
+                found: format!("{} radii", radii.len()),
+                expected: format!("{n}, one a point"),
+            });
+        }
         let mut boundary = vec![false; n];
         for &row in &options.boundary {
             *boundary.get_mut(row).ok_or(Error::Index {
@@ -356,7 +376,7 @@ impl<S: Scalar> Analyzer<'_, S> {
                     out.take(i, verdict, boundary[i]);
                 }
             }
-            let again = self.beside_curves(&out, options.eps);
+            let again = self.beside_curves(&out, options);
             for (i, verdict) in self.explain_all(again, 3, options, false, &faults) {
                 if !verdict.is_unexplained() {
                     out.take(i, verdict, boundary[i]);
@@ -385,7 +405,7 @@ impl<S: Scalar> Analyzer<'_, S> {
     /// Where sheets cross at a small angle the share of variance that tells a crossing is near the
     /// tolerance, and single points fall below it: a curve that was found on both sides of such a
     /// point is looked for there too.
-    fn beside_curves(&self, analysis: &Analysis, eps: f64) -> Vec<Asked> {
+    fn beside_curves(&self, analysis: &Analysis, options: &AnalysisOptions) -> Vec<Asked> {
         let mut near = Vec::new();
         let mut covered = vec![false; analysis.roles.len()];
         let mut beside = vec![false; analysis.roles.len()];
@@ -393,6 +413,7 @@ impl<S: Scalar> Analyzer<'_, S> {
             if analysis.roles[i] != Role::Curve || covered[i] {
                 continue;
             }
+            let eps = options.radius(i);
             self.oracle
                 .indices_within(i, S::of(BESIDE * eps), &mut near);
             for &x in &near {
@@ -473,7 +494,7 @@ impl<S: Scalar> Analyzer<'_, S> {
             // Taken on trust: only a boundary is looked for.
             (0, 2)
         } else {
-            self.dimension_at(i, options.eps, scratch)?
+            self.dimension_at(i, options.radius(i), scratch)?
         };
         let asked = self
             .models
@@ -496,7 +517,7 @@ impl<S: Scalar> Analyzer<'_, S> {
         boundary: bool,
         scratch: &mut Scratch<S>,
     ) -> Verdict {
-        let eps = options.eps;
+        let eps = options.radius(i);
         let Some(view) = self.view(i, eps, eps, scratch) else {
             return Verdict::REGULAR;
         };
@@ -540,7 +561,7 @@ impl<S: Scalar> Analyzer<'_, S> {
         options: &AnalysisOptions,
         scratch: &mut Scratch<S>,
     ) -> (Verdict, Vec<Option<Verdict>>) {
-        let mut radius = options.eps;
+        let mut radius = options.radius(i);
         let mut dimension = dimension;
         for shrunk in 0..=SHRINKS {
             let Some(view) = self.view(i, radius, radius, scratch) else {

@@ -97,6 +97,15 @@ pub(super) struct Region {
 }
 
 impl Region {
+    /// All points.
+    pub(super) fn everything(count: usize, margin: f64) -> Self {
+        Self {
+            rows: (0..count as u32).collect(),
+            inside: vec![true; count],
+            margin,
+        }
+    }
+
     /// The points within a radius of some rows, `(row, radius)` for each.
     pub(super) fn about<S: Scalar>(
         analyzer: &Analyzer<'_, S>,

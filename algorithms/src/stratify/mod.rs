@@ -11,4 +11,6 @@ mod waist;
 
 pub use analysis::{Analysis, AnalysisOptions, Analyzer, Dimensions, Role};
 pub use paper::Published;
-pub use waist::{PointStratum, Stratification, StratifyCounts, StratifyOptions, stratify};
+pub use waist::{
+    ChartSpace, PointStratum, Stratification, StratifyCounts, StratifyOptions, stratify,
+};

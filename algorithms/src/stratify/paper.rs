@@ -14,7 +14,7 @@
 //!   and an edge between two boundary landmarks bounds one cell. Any other curve edge bounds four.
 
 use super::analysis::{Analysis, Analyzer, Role, Scratch};
-use super::waist::{Stratification, StratifyCounts};
+use super::waist::{Stratification, StratifyCounts, lengths};
 use crate::execute;
 use crate::principal::PrincipalFrame;
 use crate::singularity::PlanePair;
@@ -307,13 +307,10 @@ impl Published {
         }
         pairs.sort_unstable();
         pairs.dedup();
-        let distance = |a: u32, b: u32| {
-            let (p, q) = (rows[a as usize], rows[b as usize]);
-            metric.unwrap_or(analyzer.metric).distance(p, q)
-        };
+        let lengths = lengths(analyzer, metric.unwrap_or(analyzer.metric), &rows, &pairs);
         let distances = SparseDistances::new(
             rows.len(),
-            pairs.iter().map(|&(a, b)| (a, b, distance(a, b))),
+            pairs.iter().zip(&lengths).map(|(&(a, b), &d)| (a, b, d)),
         )?;
         let curve_edges = curve_edges(&neighborhoods[..curve_landmarks], &distances, chart)?
             .into_iter()

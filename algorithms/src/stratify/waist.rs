@@ -7,8 +7,8 @@ use super::plain::Surroundings;
 use crate::audit;
 use crate::execute;
 use crosscap_core::{
-    CellNeighborhood, Error, LandmarkSelector, MetricSpace, Scalar, SparseDistances,
-    StratifiedLandmarks, squared_distance,
+    CellNeighborhood, Error, LandmarkSelector, MetricSpace, Neighbor, NeighborhoodOracle, Scalar,
+    SparseDistances, StratifiedLandmarks, squared_distance,
 };
 use serde::{Deserialize, Serialize};
 
@@ -66,6 +66,93 @@ pub struct Stratification<S> {
     pub counts: StratifyCounts,
 }
 
+/// The space that charts live in, where it is not that of the places.
+#[derive(Clone, Copy)]
+pub struct ChartSpace<'a, S: Scalar> {
+    /// Distances inside the charts.
+    pub metric: &'a dyn MetricSpace<Scalar = S>,
+    /// What is inside a chart; serves the same metric.
+    pub oracle: &'a dyn NeighborhoodOracle<Scalar = S>,
+}
+
+impl<S: Scalar> ChartSpace<'_, S> {
+    /// Distances of sorted pairs of landmarks. Where a landmark was moved onto a curve, what the move
+    /// does to the straight line is added: a metric knows the points as they were.
+    fn lengths(
+        &self,
+        analyzer: &Analyzer<'_, S>,
+        analysis: &Analysis,
+        rows: &[usize],
+        pairs: &[(u32, u32)],
+    ) -> Vec<S> {
+        let mut lengths = lengths(analyzer, self.metric, rows, pairs);
+        for (length, &(a, b)) in lengths.iter_mut().zip(pairs) {
+            let (p, q) = (rows[a as usize], rows[b as usize]);
+            if analysis.offsets[p] > 0.0 || analysis.offsets[q] > 0.0 {
+                let moved = analysis.places.squared_distance(p, q).sqrt();
+                let straight = analyzer.cloud.squared_distance(p, q).sqrt();
+                *length = S::of((length.as_f64() + moved - straight).max(0.0));
+            }
+        }
+        lengths
+    }
+}
+
+/// Distances of sorted pairs of landmarks in a metric, asked for row by row.
+pub(super) fn lengths<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    metric: &dyn MetricSpace<Scalar = S>,
+    rows: &[usize],
+    pairs: &[(u32, u32)],
+) -> Vec<S> {
+    let runs: Vec<&[(u32, u32)]> = pairs.chunk_by(|x, y| x.0 == y.0).collect();
+    let lengths = execute::map(analyzer.execute, runs.len(), Vec::new, |targets, k| {
+        targets.clear();
+        targets.extend(runs[k].iter().map(|&(_, b)| rows[b as usize]));
+        let mut lengths = Vec::with_capacity(targets.len());
+        metric.distances_to(rows[runs[k][0].0 as usize], targets, &mut lengths);
+        lengths
+    });
+    lengths.into_iter().flatten().collect()
+}
+
+/// The points of a ball with their distances from its center, reusable.
+struct Ball<S> {
+    found: Vec<Neighbor<S>>,
+    stamps: Vec<u32>,
+    distances: Vec<f64>,
+    round: u32,
+}
+
+impl<S: Scalar> Ball<S> {
+    fn new(n: usize) -> Self {
+        Self {
+            found: Vec::new(),
+            stamps: vec![0; n],
+            distances: vec![0.0; n],
+            round: 0,
+        }
+    }
+
+    fn fill(&mut self, oracle: &dyn NeighborhoodOracle<Scalar = S>, center: usize, radius: f64) {
+        self.round += 1;
+        oracle.within(center, S::of(radius), &mut self.found);
+        for x in &self.found {
+            self.stamps[x.index] = self.round;
+            self.distances[x.index] = x.distance.as_f64();
+        }
+    }
+
+    fn holds(&self, row: usize) -> bool {
+        self.stamps[row] == self.round
+    }
+
+    /// Distance of a point that the ball holds.
+    fn distance(&self, row: usize) -> f64 {
+        self.distances[row]
+    }
+}
+
 /// Points of a cell that must be flooded for a curve landmark to be at the rim of the flood.
 const CONTACTS: usize = 6;
 /// Spacing of the decompositions that label points, as a share of the radius of their fit.
@@ -91,15 +178,15 @@ struct Job {
 
 /// Cuts the cloud along its curves and points into cells and describes every landmark's surroundings.
 ///
-/// `metric` gives the distances inside the neighborhoods, any metric on the rows of the input;
-/// `None` for Euclidean distances of the places, moved ones included.
+/// `charts` gives the extent of the neighborhoods and the distances inside them, in any metric on the
+/// rows of the input; `None` for Euclidean distances of the places, moved ones included.
 ///
 /// # Errors
 /// [`Error::Parameter`] for lengths that are not positive; those of the selector.
 pub fn stratify<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
     analysis: &mut Analysis,
-    metric: Option<&dyn MetricSpace<Scalar = S>>,
+    charts: Option<&ChartSpace<'_, S>>,
     selector: &dyn LandmarkSelector<Scalar = S>,
     options: &StratifyOptions,
 ) -> Result<Stratification<S>, Error> {
@@ -112,8 +199,8 @@ pub fn stratify<S: Scalar>(
             });
         }
     }
-    if let Some(metric) = metric {
-        audit::metric(metric, analyzer.oracle)?;
+    if let Some(charts) = charts {
+        audit::metric(charts.metric, charts.oracle)?;
     }
     let n = analysis.roles.len();
     let gap = 2.0 * NODE_SPACING * options.dl;
@@ -206,7 +293,7 @@ pub fn stratify<S: Scalar>(
         Default::default,
         |scratch, j| {
             let job = &jobs[j];
-            if job.group.is_some() {
+            if job.group.is_some() || charts.is_some() {
                 return None;
             }
             let landmark = job.landmark as u32;
@@ -233,18 +320,26 @@ pub fn stratify<S: Scalar>(
         if pending.is_empty() {
             break;
         }
-        let sufficient = known.take().filter(|(_, reach)| {
-            pending
-                .iter()
-                .all(|&j| reach[jobs[j].landmark] >= radius)
-        });
+        let sufficient = known
+            .take()
+            .filter(|(_, reach)| pending.iter().all(|&j| reach[jobs[j].landmark] >= radius));
         let (graph, reach) = match sufficient {
             Some(known) => known,
+            None if charts.is_some() => {
+                // Nothing is known of how far a chart reaches in straight lines.
+                let region = Region::everything(n, options.dl);
+                let reach = vec![f64::INFINITY; rows.len()];
+                (CellGraph::new(analyzer, analysis, &refs, &region), reach)
+            }
             None => {
                 let mut reach = vec![0.0_f64; rows.len()];
                 for &j in &pending {
                     // Where curves cut charts they are likely to be widened.
-                    let spare = if jobs[j].group.is_some() { WIDENING } else { 1.0 };
+                    let spare = if jobs[j].group.is_some() {
+                        WIDENING
+                    } else {
+                        1.0
+                    };
                     reach[jobs[j].landmark] = spare * radius;
                 }
                 let centers: Vec<(usize, f64)> = (rows.iter().copied().zip(reach.iter().copied()))
@@ -261,16 +356,35 @@ pub fn stratify<S: Scalar>(
             analyzer.execute,
             FLOODS_AT_ONCE,
             pending.len(),
-            || Hits::new(&contacts),
-            |hits, p| {
+            || {
+                let held = if charts.is_some() { n } else { 0 };
+                (Hits::new(&contacts), Ball::new(held))
+            },
+            |(hits, ball), p| {
                 let job = &jobs[pending[p]];
                 let own = [rows[job.landmark] as u32];
                 let from = job.group.map_or(&own[..], |g| &contacts.groups[g].rows);
                 let origin = places.point(own[0] as usize);
                 let reach = radius * radius;
-                let inside = |row: usize| squared_distance(origin, places.point(row)) < reach;
+                if let Some(charts) = charts {
+                    ball.fill(charts.oracle, rows[job.landmark], radius);
+                }
+                let inside = |row: usize| match charts {
+                    None => squared_distance(origin, places.point(row)) < reach,
+                    Some(_) => ball.holds(row),
+                };
                 hits.flood.run(&graph, from, inside);
-                hits.members(&contacts, &landmark_at, job.landmark, |k| inside(rows[k]))
+                let found =
+                    hits.members(&contacts, &landmark_at, job.landmark, |k| inside(rows[k]));
+                if charts.is_none() {
+                    return found;
+                }
+                let mut ranked: Vec<(f64, u32)> = (found.into_iter())
+                    .map(|k| (ball.distance(rows[k as usize]), k))
+                    .collect();
+                ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+                ranked.dedup();
+                ranked.into_iter().map(|x| x.1).collect()
             },
         );
         let mut thin = Vec::new();
@@ -296,8 +410,10 @@ pub fn stratify<S: Scalar>(
                 .into_iter()
                 .map(|k| (far(k), k))
                 .collect();
-            ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            ranked.dedup();
+            if charts.is_none() {
+                ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+                ranked.dedup();
+            }
             let center = job.landmark as u32;
             CellNeighborhood {
                 center,
@@ -307,17 +423,30 @@ pub fn stratify<S: Scalar>(
             }
         })
         .collect();
-    let distances = SparseDistances::within(rows.len(), &neighborhoods, |a, b| {
-        let (p, q) = (rows[a as usize], rows[b as usize]);
-        match metric {
-            Some(metric) => audit::distance(metric, p, q).unwrap_or_else(|fault| {
-                analysis.faults.add(p, fault);
-                S::zero()
-            }),
-            None => S::of(places.squared_distance(p, q).sqrt()),
+    let distances = match charts {
+        None => SparseDistances::within(rows.len(), &neighborhoods, |a, b| {
+            let (p, q) = (rows[a as usize], rows[b as usize]);
+            S::of(places.squared_distance(p, q).sqrt())
+        })?,
+        Some(charts) => {
+            let mut pairs: Vec<(u32, u32)> = Vec::new();
+            for near in &neighborhoods {
+                for (i, &a) in near.members.iter().enumerate() {
+                    pairs.extend(near.members[..i].iter().map(|&b| (a.min(b), a.max(b))));
+                }
+            }
+            pairs.sort_unstable();
+            pairs.dedup();
+            let lengths = charts.lengths(analyzer, analysis, &rows, &pairs);
+            let wrong = |d: &S| !(d.is_finite() && *d >= S::zero());
+            if let Some(at) = lengths.iter().position(wrong) {
+                let [p, q] = [pairs[at].0, pairs[at].1].map(|k| rows[k as usize]);
+                audit::distance(charts.metric, p, q)?;
+            }
+            let entries = pairs.iter().zip(&lengths).map(|(&(a, b), &d)| (a, b, d));
+            SparseDistances::new(rows.len(), entries)?
         }
-    })?;
-    analysis.faults.none()?;
+    };
     let counts = StratifyCounts {
         landmarks: rows.len(),
         curve_landmarks: curves.rows.len(),

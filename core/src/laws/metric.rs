@@ -45,7 +45,17 @@ static TRIANGLE: Law = Law {
                subtracted from 1",
 };
 
-pub(super) static ALL: [&Law; 4] = [&NEVER_NAN, &IDENTITY, &SYMMETRY, &TRIANGLE];
+/// Many at once.
+static MANY: Law = Law {
+    subject: SUBJECT,
+    name: "many at once",
+    says: "distances_to gives, in the order asked for, what distance gives, to the bit; the former \
+           content of the buffer is dropped",
+    look_for: "a search that stops before the last target, or sums in another order than the one \
+               between two points; a missing `out.clear()`; targets asked for twice",
+};
+
+pub(super) static ALL: [&Law; 5] = [&NEVER_NAN, &IDENTITY, &SYMMETRY, &TRIANGLE, &MANY];
 
 /// Puts a metric through its laws, on all triples of clouds of 1 to 9 points in R^1 to R^5 with copies
 /// and ties.
@@ -107,6 +117,23 @@ pub fn metric<M: MetricSpace>(
                     );
                 }
             }
+        }
+        Ok(())
+    })?;
+    MANY.holds(settings, &clouds, |cloud| {
+        let metric = build(cloud);
+        let n = metric.len();
+        // Backwards, and the first one twice.
+        let to: Vec<usize> = (0..n).rev().chain(n.checked_sub(1)).collect();
+        let mut out = vec![M::Scalar::of(-1.0)];
+        for from in 0..n {
+            metric.distances_to(from, &to, &mut out);
+            let alone: Vec<f64> = (to.iter().map(|&b| metric.distance(from, b).as_f64())).collect();
+            let many: Vec<f64> = out.iter().map(|d| d.as_f64()).collect();
+            ensure!(
+                many == alone,
+                "distances_to({from}, {to:?}) = {many:?}, one by one {alone:?}"
+            );
         }
         Ok(())
     })
@@ -173,6 +200,34 @@ mod tests {
             put(|a, b, d| if a < b { d.next_up() } else { d }),
             &SYMMETRY,
         );
+    }
+
+    /// Straight-line distances whose many at once are those of a matrix in single precision.
+    struct Halved(StraightLine<f64>);
+
+    impl MetricSpace for Halved {
+        type Scalar = f64;
+        fn len(&self) -> usize {
+            self.0.len()
+        }
+        fn distance(&self, a: usize, b: usize) -> f64 {
+            self.0.distance(a, b)
+        }
+        fn distances_to(&self, from: usize, to: &[usize], out: &mut Vec<f64>) {
+            out.clear();
+            out.extend(to.iter().map(|&b| f64::from(self.distance(from, b) as f32)));
+        }
+        fn name(&self) -> &str {
+            "halved"
+        }
+    }
+
+    #[test]
+    fn many_distances_in_another_precision_are_caught() {
+        let broken = metric(&Settings::default(), |cloud| {
+            Halved(StraightLine(cloud.clone()))
+        });
+        catches(broken, &MANY);
     }
 
     #[test]

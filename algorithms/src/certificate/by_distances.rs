@@ -1,0 +1,248 @@
+//! What can be asked of a mesh whose points are known by their distances alone.
+
+use super::cover::Distances;
+use super::incidence::Incidence;
+use super::{
+    Certificate, CertificateOptions, Place, Violation, ViolationKind, edges, indices, links, within,
+};
+use crosscap_core::{Mesh, MetricSpace, NeighborhoodOracle, PointCloud, Scalar};
+use serde::Serialize;
+
+/// Folds, needles and cover, from distances.
+///
+/// Whether triangles overlap or cross cannot be told without places, nor how far points lie off
+/// the planes of triangles.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct DistanceReport {
+    /// Smallest angle between two triangles at an ordinary edge, degrees, in the tetrahedron with the
+    /// six distances of their corners; 180 is flat.
+    pub smallest_dihedral: f64,
+    /// Ordinary edges with an angle below the limit.
+    pub folds: usize,
+    /// Smallest angle of a triangle with the three distances of its corners, degrees.
+    pub smallest_angle: f64,
+    /// Points to their nearest vertex, in dl.
+    pub points_to_vertices: Distances,
+    /// Number of landmarks that are not in the mesh.
+    pub unused_landmarks: usize,
+    /// What is wrong.
+    pub violations: Vec<Violation>,
+}
+
+/// Greatest distance of a point to the nearest vertex, in dl: landmarks leave none farther than dl.
+const POINTS_TO_VERTICES: f64 = 1.25;
+
+/// Asks a mesh everything that can be decided by distances: that its arrays are those of a complex,
+/// the numbers of triangles at its edges, the links of its vertices, folds and needles, and that
+/// every point is near a vertex. The levels geometry, cover and quality, which need places, stay
+/// out: see [`Certificate::unchecked`].
+///
+/// The vertices stand for the rows `mesh.point_index` of the space; their places are not looked at.
+///
+/// O(t log t) for t triangles, and a query a vertex.
+pub fn certify_by_distances<S: Scalar>(
+    mesh: &Mesh,
+    metric: &dyn MetricSpace<Scalar = S>,
+    oracle: &dyn NeighborhoodOracle<Scalar = S>,
+    options: &CertificateOptions<'_>,
+) -> Certificate {
+    // Distinct places that say nothing: that vertices are apart is asked of the metric.
+    let names = PointCloud::new(1, (0..mesh.vertices.len()).map(|v| v as f64).collect());
+    let named = Mesh {
+        complex: mesh.complex.clone(),
+        vertices: names.unwrap_or_else(|_| mesh.vertices.clone()),
+        point_index: mesh.point_index.clone(),
+    };
+    let mut certificate = Certificate {
+        indices: indices::check(&named),
+        edges: None,
+        links: None,
+        geometry: None,
+        cover: None,
+        quality: None,
+        by_distances: None,
+    };
+    certificate.indices.dimension = 0;
+    let rows: Option<Vec<usize>> = (mesh.point_index.iter())
+        .map(|&row| usize::try_from(row).ok().filter(|&r| r < metric.len()))
+        .collect();
+    let (Some(rows), true) = (rows, certificate.indices.usable) else {
+        if certificate.indices.usable {
+            let what = format!("vertices that stand for no point of the {}", metric.len());
+            let fault = Violation::whole(ViolationKind::Shape, what);
+            certificate.indices.violations.push(fault);
+            certificate.indices.usable = false;
+        }
+        return certificate;
+    };
+    let incidence = Incidence::new(&mesh.complex);
+    certificate.edges = Some(edges::check(
+        &named,
+        &incidence,
+        options.closed,
+        options.limits.shortest_boundary,
+    ));
+    certificate.links = Some(links::check(
+        &named,
+        &incidence,
+        options.admissible_links,
+        options.special_points,
+    ));
+    let report = check(mesh, &incidence, &rows, metric, oracle, options);
+    certificate.by_distances = Some(report);
+    certificate
+}
+
+fn check<S: Scalar>(
+    mesh: &Mesh,
+    incidence: &Incidence,
+    rows: &[usize],
+    metric: &dyn MetricSpace<Scalar = S>,
+    oracle: &dyn NeighborhoodOracle<Scalar = S>,
+    options: &CertificateOptions<'_>,
+) -> DistanceReport {
+    let limits = &options.limits;
+    let length = |a: u32, b: u32| metric.distance(rows[a as usize], rows[b as usize]).as_f64();
+    let triangles = &mesh.complex.triangles;
+    let mut report = DistanceReport {
+        smallest_dihedral: 180.0,
+        smallest_angle: 180.0,
+        unused_landmarks: options.unused_landmarks.len(),
+        ..DistanceReport::default()
+    };
+    let mut folds = Vec::new();
+    let mut lengths = Vec::with_capacity(incidence.edges.len());
+    let mut at_one_place = Vec::new();
+    for (e, &[a, b]) in incidence.edges.iter().enumerate() {
+        let base = length(a, b);
+        lengths.push(base);
+        if !within(0.0, base) || base == 0.0 {
+            at_one_place.push(Place::Vertices([a, b]));
+        }
+        let &[s, t] = incidence.at_edge(e) else {
+            continue;
+        };
+        let tip = |t: u32| {
+            triangles[t as usize]
+                .into_iter()
+                .find(|&v| v != a && v != b)
+        };
+        let (Some(c), Some(d)) = (tip(s), tip(t)) else {
+            continue;
+        };
+        let angle = dihedral(
+            base,
+            [length(a, c), length(b, c)],
+            [length(a, d), length(b, d)],
+            length(c, d),
+        );
+        report.smallest_dihedral = report.smallest_dihedral.min(angle);
+        if !within(limits.fold, angle) {
+            folds.push(Place::Edge([a, b]));
+        }
+    }
+    report.folds = folds.len();
+    let mut needles = Vec::new();
+    for (t, &[a, b, c]) in triangles.iter().enumerate() {
+        let angle = smallest_angle([length(b, c), length(a, c), length(a, b)]);
+        report.smallest_angle = report.smallest_angle.min(angle);
+        if !within(limits.min_angle, angle) {
+            needles.push(Place::Triangle(t as u32));
+        }
+    }
+    let separation = options
+        .landmark_separation
+        .unwrap_or_else(|| 0.75 * super::quality::median(lengths));
+    let mut nearest = vec![f64::INFINITY; metric.len()];
+    let mut near = Vec::new();
+    for &row in rows {
+        oracle.within(row, S::of(2.0 * separation), &mut near);
+        for x in &near {
+            nearest[x.index] = nearest[x.index].min(x.distance.as_f64());
+        }
+    }
+    let limit = POINTS_TO_VERTICES * separation;
+    let far: Vec<Place> = (0..nearest.len())
+        .filter(|&p| !within(nearest[p], limit))
+        .map(Place::Point)
+        .collect();
+    // What is beyond every query is at least that far.
+    let in_separations = |d: &f64| d.min(2.0 * separation) / separation;
+    report.points_to_vertices = Distances::of(nearest.iter().map(in_separations).collect());
+
+    let nowhere = |_: Place| Vec::new();
+    let allowed = (limits.unused_landmarks * mesh.complex.vertices as f64).floor();
+    if report.unused_landmarks as f64 > allowed {
+        let places = options.unused_landmarks.iter().map(|&r| Place::Point(r));
+        report.violations.extend(Violation::at(
+            ViolationKind::UnusedLandmarks,
+            places.collect(),
+            nowhere,
+        ));
+    }
+    report.violations.extend(Violation::at(
+        ViolationKind::CoincidentVertices,
+        at_one_place,
+        nowhere,
+    ));
+    report.violations.extend(
+        Violation::at(ViolationKind::Fold, folds, nowhere)
+            .map(|v| v.measured(report.smallest_dihedral, limits.fold)),
+    );
+    report.violations.extend(
+        Violation::at(ViolationKind::NeedleTriangle, needles, nowhere)
+            .map(|v| v.measured(report.smallest_angle, limits.min_angle)),
+    );
+    report.violations.extend(
+        Violation::at(ViolationKind::UncoveredPoints, far, nowhere)
+            .map(|v| v.measured(report.points_to_vertices.max, POINTS_TO_VERTICES)),
+    );
+    report
+}
+
+/// Angle between two triangles over a common base, degrees, from the sides of each and the distance
+/// of their tips. Distances that no tetrahedron has give the nearest angle there is; a triangle
+/// without height counts as folded.
+fn dihedral(base: f64, [ac, bc]: [f64; 2], [ad, bd]: [f64; 2], cd: f64) -> f64 {
+    let foot = |a: f64, b: f64| (base * base + a * a - b * b) / (2.0 * base);
+    let (p, q) = (foot(ac, bc), foot(ad, bd));
+    let (h, g) = (ac * ac - p * p, ad * ad - q * q);
+    let cosine = (h + g + (p - q) * (p - q) - cd * cd) / (2.0 * (h * g).sqrt());
+    if h > 0.0 && g > 0.0 && cosine.is_finite() {
+        cosine.clamp(-1.0, 1.0).acos().to_degrees()
+    } else {
+        0.0
+    }
+}
+
+/// Smallest angle of a triangle with the given sides, degrees; 0 for sides that make none.
+fn smallest_angle(mut sides: [f64; 3]) -> f64 {
+    sides.sort_unstable_by(f64::total_cmp);
+    let [a, b, c] = sides;
+    let cosine = (b * b + c * c - a * a) / (2.0 * b * c);
+    if a > 0.0 && c < a + b && cosine.is_finite() {
+        cosine.clamp(-1.0, 1.0).acos().to_degrees()
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_of_known_tetrahedra() {
+        let root = 2f64.sqrt();
+        // Two sides of a unit square's diagonal, flat and folded to a right angle.
+        assert!((dihedral(root, [1.0; 2], [1.0; 2], root) - 180.0).abs() < 1e-6);
+        assert!((dihedral(root, [1.0; 2], [1.0; 2], 1.0) - 90.0).abs() < 1e-9);
+        assert_eq!(dihedral(root, [1.0; 2], [1.0; 2], 0.0), 0.0);
+        let regular = dihedral(1.0, [1.0; 2], [1.0; 2], 1.0);
+        assert!((regular - (1.0f64 / 3.0).acos().to_degrees()).abs() < 1e-9);
+        assert_eq!(dihedral(2.0, [1.0; 2], [1.0; 2], 0.0), 0.0);
+        assert!((smallest_angle([3.0, 5.0, 4.0]) - (0.8f64).acos().to_degrees()).abs() < 1e-9);
+        assert_eq!(smallest_angle([1.0, 2.0, 4.0]), 0.0);
+        assert_eq!(smallest_angle([f64::INFINITY, 1.0, 1.0]), 0.0);
+    }
+}

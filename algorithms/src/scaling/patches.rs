@@ -1,0 +1,284 @@
+//! Classical scaling of overlapping patches, moved onto each other.
+
+use super::{Scaled, pivots::PivotFrame};
+use crate::execute::{self, Execute};
+use crosscap_core::{Error, PointCloud, SparseDistances};
+use nalgebra::DMatrix;
+
+/// Points of a patch that are scaled; the others are placed by their distances to these.
+const PIVOTS: usize = 48;
+/// A patch is laid onto what is there already by at least this many more points than dimensions.
+const SPARE: usize = 3;
+/// A direction in which the common points extend less than this share of their largest extent
+/// cannot be laid: the patch could as well be turned over.
+const LEAST_EXTENT: f64 = 1e-5;
+
+/// Scales balls of which all distances are known, and lays them onto each other by the motion
+/// that fits their common points best (Kabsch 1976), the one with the most of them first.
+///
+/// With every distance below a radius known, a ball is that of half the radius. For distances of
+/// points in R^m the places are exact within rounding, wherever patches overlap in more than a
+/// plane of their space; for others the deviation, over all known pairs, says how far off they are.
+///
+/// # Errors
+/// [`Error::Shape`] for no point; [`Error::SparseNeighborhood`] for a point that is in no patch or
+/// whose patch cannot be laid onto the others: the distances are too few, or the data in pieces.
+///
+/// ```
+/// use crosscap_algorithms::execute::Serial;
+/// use crosscap_algorithms::scaling::scale_patches;
+/// use crosscap_core::{PointCloud, SparseDistances};
+/// let rows = (0..400).flat_map(|k| {
+///     let (u, v) = (f64::from(k % 20), f64::from(k / 20));
+///     [u, v, (0.3 * u).sin() + (0.4 * v).cos()]
+/// });
+/// let cloud = PointCloud::new(3, rows.collect())?;
+/// let pairs = (0..400).flat_map(|a| (0..a).map(move |b| (a, b)));
+/// let near = pairs.map(|(a, b)| (a as u32, b as u32, cloud.squared_distance(a, b).sqrt()));
+/// let known = SparseDistances::new(400, near.filter(|x| x.2 < 6.0))?;
+/// let scaled = scale_patches(&known, &Serial)?;
+/// assert_eq!(scaled.places.dimension(), 3);
+/// assert!(scaled.deviation < 1e-8);
+/// # Ok::<(), crosscap_core::Error>(())
+/// ```
+pub fn scale_patches(known: &SparseDistances<f64>, execute: &dyn Execute) -> Result<Scaled, Error> {
+    let n = known.len();
+    if n == 0 {
+        return Err(Error::Shape {
+            found: "no point".into(),
+            expected: "at least 1".into(),
+        });
+    }
+    let centers = cover(known);
+    let patches = execute::map(
+        execute,
+        centers.len(),
+        || (),
+        |(), k| Patch::new(known, centers[k]),
+    );
+    let width = patches.iter().map(Patch::width).max().unwrap_or(1);
+    let (places, placed) = lay(n, width, &patches);
+    if let Some(point) = placed.iter().position(|p| !p) {
+        return Err(Error::SparseNeighborhood {
+            point,
+            found: known.row(point as u32).count() + 1,
+            needed: width + 1 + SPARE,
+            parameter: "the number of distances given",
+        });
+    }
+    let places = PointCloud::new(width, places)?;
+    let worst = execute::map(
+        execute,
+        n,
+        || (),
+        |(), i| {
+            let row = known.row(i as u32);
+            row.map(|(j, d)| (d - places.squared_distance(i, j as usize).sqrt()).abs())
+                .fold(0.0, f64::max)
+        },
+    );
+    Ok(Scaled {
+        deviation: worst.into_iter().fold(0.0, f64::max),
+        places,
+    })
+}
+
+/// The radius up to which distances from a point are taken as known.
+fn reach(known: &SparseDistances<f64>, point: u32) -> f64 {
+    known.row(point).map(|x| x.1).fold(0.0, f64::max)
+}
+
+/// Centers of patches whose quarter balls hold every point.
+fn cover(known: &SparseDistances<f64>) -> Vec<u32> {
+    let mut held = vec![false; known.len()];
+    let mut centers = Vec::new();
+    for i in 0..known.len() as u32 {
+        if held[i as usize] {
+            continue;
+        }
+        centers.push(i);
+        held[i as usize] = true;
+        let limit = 0.25 * reach(known, i);
+        for (j, d) in known.row(i) {
+            held[j as usize] |= d <= limit;
+        }
+    }
+    centers
+}
+
+/// Points with places of their own.
+struct Patch {
+    members: Vec<u32>,
+    frame: PivotFrame,
+    places: Vec<f64>,
+}
+
+impl Patch {
+    fn new(known: &SparseDistances<f64>, center: u32) -> Self {
+        let limit = 0.5 * reach(known, center);
+        let mut near: Vec<(f64, u32)> = (known.row(center).filter(|x| x.1 <= limit))
+            .map(|(j, d)| (d, j))
+            .collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let others = near.into_iter().map(|x| x.1);
+        let mut members: Vec<u32> = std::iter::once(center).chain(others).collect();
+        // Every few by distance, each with all distances to those before.
+        let stride = members.len().div_ceil(PIVOTS).max(1);
+        let mut pivots: Vec<u32> = Vec::with_capacity(PIVOTS);
+        for &j in members.iter().step_by(stride) {
+            if pivots.iter().all(|&p| known.get(p, j).is_some()) {
+                pivots.push(j);
+            }
+        }
+        members.retain(|&j| pivots.iter().all(|&p| known.get(p, j).is_some()));
+        let square = |a: u32, b: u32| known.get(a, b).map_or(0.0, |d| d * d);
+        let frame = PivotFrame::of(pivots.len(), super::MOST_DIMENSIONS, |a, b| {
+            square(pivots[a], pivots[b])
+        });
+        let width = frame.width();
+        let mut places = vec![0.0; members.len() * width];
+        let mut squares = vec![0.0; pivots.len()];
+        for (&j, place) in members.iter().zip(places.chunks_exact_mut(width)) {
+            for (s, &p) in squares.iter_mut().zip(&pivots) {
+                *s = square(p, j);
+            }
+            frame.place(&squares, place);
+        }
+        Self {
+            members,
+            frame,
+            places,
+        }
+    }
+
+    fn width(&self) -> usize {
+        self.frame.width()
+    }
+
+    /// Coordinate `c` of member `k`, 0 beyond its own dimensions.
+    fn at(&self, k: usize, c: usize) -> f64 {
+        if c < self.width() {
+            self.places[k * self.width() + c]
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Places of all points in R^`width`, and which of them have one.
+fn lay(n: usize, width: usize, patches: &[Patch]) -> (Vec<f64>, Vec<bool>) {
+    let mut places = vec![0.0; n * width];
+    let mut placed = vec![false; n];
+    let mut patches_of: Vec<Vec<u32>> = vec![Vec::new(); n];
+    for (p, patch) in patches.iter().enumerate() {
+        for &j in &patch.members {
+            patches_of[j as usize].push(p as u32);
+        }
+    }
+    // Number of placed members of every patch, and those patches by it.
+    let mut common = vec![0usize; patches.len()];
+    let mut laid = vec![false; patches.len()];
+    let mut tried = vec![0usize; patches.len()];
+    let mut queue = std::collections::BinaryHeap::new();
+    // The first patch is the one with the most extent in all dimensions.
+    let extent = |p: &Patch| {
+        if p.width() == width {
+            p.frame.eigenvalues[width - 1]
+        } else {
+            0.0
+        }
+    };
+    let first = (0..patches.len()).max_by(|&a, &b| {
+        let by_extent = extent(&patches[a]).total_cmp(&extent(&patches[b]));
+        by_extent.then(b.cmp(&a))
+    });
+    queue.extend(first.map(|p| (usize::MAX, std::cmp::Reverse(p))));
+    while let Some((count, std::cmp::Reverse(p))) = queue.pop() {
+        let current = if count == usize::MAX {
+            count
+        } else {
+            common[p]
+        };
+        if laid[p] || count != current || tried[p] == count {
+            continue;
+        }
+        tried[p] = count;
+        let patch = &patches[p];
+        let motion = if count == usize::MAX {
+            let turn = DMatrix::<f64>::identity(width, width);
+            Some((turn, vec![0.0; width], vec![0.0; width]))
+        } else {
+            motion(patch, width, &places, &placed)
+        };
+        let Some((turn, from, to)) = motion else {
+            continue;
+        };
+        laid[p] = true;
+        for (k, &j) in patch.members.iter().enumerate() {
+            let j = j as usize;
+            if placed[j] {
+                continue;
+            }
+            placed[j] = true;
+            for r in 0..width {
+                let turned = (0..width).map(|c| turn[(r, c)] * (patch.at(k, c) - from[c]));
+                places[j * width + r] = to[r] + turned.sum::<f64>();
+            }
+            for &other in &patches_of[j] {
+                common[other as usize] += 1;
+            }
+        }
+        for &j in &patch.members {
+            for &other in &patches_of[j as usize] {
+                let other = other as usize;
+                if !laid[other] && tried[other] != common[other] {
+                    queue.push((common[other], std::cmp::Reverse(other)));
+                }
+            }
+        }
+    }
+    (places, placed)
+}
+
+/// Rotation or reflection, center before, center after.
+type Motion = (DMatrix<f64>, Vec<f64>, Vec<f64>);
+
+/// The motion that lays a patch onto the places of its members; `None` where these do not decide it.
+fn motion(patch: &Patch, width: usize, places: &[f64], placed: &[bool]) -> Option<Motion> {
+    let common: Vec<(usize, usize)> = (patch.members.iter().enumerate())
+        .map(|(k, &j)| (k, j as usize))
+        .filter(|&(_, j)| placed[j])
+        .collect();
+    let own = patch.width();
+    if common.len() < own + 1 + SPARE {
+        return None;
+    }
+    let count = common.len() as f64;
+    let (mut from, mut to) = (vec![0.0; width], vec![0.0; width]);
+    for &(k, j) in &common {
+        for c in 0..width {
+            from[c] += patch.at(k, c) / count;
+            to[c] += places[j * width + c] / count;
+        }
+    }
+    let mut cross = DMatrix::<f64>::zeros(width, width);
+    let mut spread = DMatrix::<f64>::zeros(own, own);
+    for &(k, j) in &common {
+        for c in 0..own {
+            let x = patch.at(k, c) - from[c];
+            for r in 0..width {
+                cross[(r, c)] += (places[j * width + r] - to[r]) * x;
+            }
+            for e in 0..own {
+                spread[(e, c)] += x * (patch.at(k, e) - from[e]);
+            }
+        }
+    }
+    // All directions that the patch itself has must show in what is common.
+    let extents = spread.symmetric_eigenvalues();
+    if extents.min() < LEAST_EXTENT * LEAST_EXTENT * extents.max() {
+        return None;
+    }
+    let svd = cross.svd(true, true);
+    Some((svd.u? * svd.v_t?, from, to))
+}

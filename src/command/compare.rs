@@ -1,0 +1,422 @@
+//! `crosscap compare`: which metric, and up to which radius.
+
+use super::compare_plot::{Lane, STYLE, escaped, svg, word};
+use super::failure::Failure;
+use super::findings::pretty;
+use super::number::{betti, counted, positive, share};
+use super::output;
+use super::parameters::{DIMENSION_TOLERANCE, MethodName, threads};
+use super::points::PointArguments;
+use super::spaces::GraphArguments;
+use super::terminal::{Progress, say};
+use clap::Args;
+use crosscap::comparison::{ComparedRun, Comparison, RunState, compare};
+use crosscap::{MetricName, Parameters};
+use crosscap_backends::files::{AnyCloud, read_indices, write_bytes_whole};
+use crosscap_core::Error;
+use serde_json::json;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "Every metric is used for the analysis and for the charts, at every radius; the radius is that of the neighborhoods and
+of the charts alike, as in the paper (`reconstruct` keeps charts at 3 dl, where a radius that is too large does no harm).
+With --analysis-eps only the charts vary.
+
+A page has the plot with its table below; .svg is the plot alone; .csv and .json are the table, the same for any number
+of threads: seconds are in them only with --times.
+
+Examples:
+  crosscap compare klein.npy --dl 0.25 --surface --eps 0.6:2.2:9 -o klein.html
+  crosscap compare klein.npy --dl 0.25 --surface --eps 0.6:2.2:9 --metrics euclidean,geodesic --betti 1,1,0 -o klein.csv
+  crosscap compare points.npy --dl 0.15 --eps 0.3:0.9:7 --analysis-eps 0.2 --dt 0.075 -o charts.html";
+
+/// The formats of a comparison.
+const OUTPUTS: &str = ".html, .svg, .csv, .json";
+/// Radii that are tried where nothing is said, as multiples of dl.
+const USUAL: [f64; 2] = [2.0, 9.0];
+const USUAL_STEPS: usize = 8;
+
+/// Compare metrics: at which radius does each reconstruct, and how much do its charts lose
+#[derive(Args, Debug)]
+#[command(after_long_help = EXAMPLES, allow_negative_numbers = true)]
+pub struct Compare {
+    /// Points: .npy, .npz, .csv, .txt, .xyz, .pdb, .ply or .mat, one point a row
+    #[arg(value_name = "POINTS")]
+    points: PathBuf,
+
+    /// What to write: .html (a page), .svg (the plot), .csv or .json (the table)
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+
+    /// The metrics, separated by commas: euclidean, geodesic, lifted
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        default_value = "euclidean,geodesic,lifted"
+    )]
+    metrics: Vec<MetricName>,
+
+    /// Radii from LO to HI in so many steps, unit of the data [default: 2 dl to 9 dl in 8 steps]
+    #[arg(long, value_name = "LO:HI:STEPS", value_parser = radii)]
+    eps: Option<Radii>,
+
+    /// Radius of the neighborhoods, where only the charts are to vary, unit of the data
+    #[arg(long, value_name = "E", value_parser = positive)]
+    analysis_eps: Option<f64>,
+
+    /// Separation of the landmarks, unit of the data
+    #[arg(long, visible_alias = "landmark-separation", value_name = "L", value_parser = positive)]
+    dl: f64,
+
+    /// Tolerance of the local dimension, 0 to 1
+    #[arg(long, visible_alias = "dimension-tolerance", value_name = "T", value_parser = share, default_value_t = DIMENSION_TOLERANCE)]
+    dt: f64,
+
+    /// Tolerance of the fit of two sheets, unit of the data [default: eps / 5]
+    #[arg(long, visible_alias = "fit-tolerance", value_name = "T", value_parser = positive)]
+    dp: Option<f64>,
+
+    /// Tolerance of the double curve, unit of the data [default: eps / 10]
+    #[arg(long, visible_alias = "curve-tolerance", value_name = "T", value_parser = positive)]
+    ep: Option<f64>,
+
+    /// Betti numbers over Q that the surface has, as in 1,1,0: a mesh with others does not count as working
+    #[arg(long, value_name = "B0,B1,B2", value_parser = three)]
+    betti: Option<[usize; 3]>,
+
+    /// Seed of the random choice of landmarks
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
+
+    /// Take every point as 2-dimensional: no double curve is looked for
+    #[arg(long)]
+    surface: bool,
+
+    /// Rows of the points on the boundary, counted from 0: .npy or .txt
+    #[arg(long, value_name = "INDICES")]
+    boundary: Option<PathBuf>,
+
+    /// Algorithm
+    #[arg(long, value_name = "NAME", value_enum, default_value_t)]
+    method: MethodName,
+
+    #[command(flatten)]
+    graph: GraphArguments,
+
+    #[command(flatten)]
+    choice: PointArguments,
+
+    /// Write the seconds of every run into .csv and .json too (one thread a run)
+    #[arg(long)]
+    times: bool,
+
+    /// Number of threads, 0 for all processors: one run a thread
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
+}
+
+/// Radii, smallest first.
+#[derive(Clone, Debug, PartialEq)]
+struct Radii(Vec<f64>);
+
+impl Compare {
+    /// Runs the command.
+    pub fn run(&self) -> Result<(), Failure> {
+        output::check(&self.output, OUTPUTS)?;
+        let mut inputs = vec![self.points.as_path()];
+        inputs.extend(self.boundary.as_deref());
+        output::distinct(&inputs, &[&self.output])?;
+        let radii = match &self.eps {
+            Some(radii) => radii.0.clone(),
+            None => steps(USUAL[0] * self.dl, USUAL[1] * self.dl, USUAL_STEPS),
+        };
+        let mut metrics = self.metrics.clone();
+        metrics.dedup();
+        let comparison = Comparison {
+            metrics,
+            radii,
+            analysis_eps: self.analysis_eps,
+            dp: self.dp,
+            ep: self.ep,
+            betti: self.betti,
+        };
+        let boundary = match &self.boundary {
+            Some(path) => read_indices(path)?,
+            None => Vec::new(),
+        };
+        let base = Parameters {
+            dt: self.dt,
+            seed: self.seed,
+            surface: self.surface,
+            boundary,
+            method: self.method.into(),
+            spaces: self.graph.spaces(),
+            threads: threads(self.threads),
+            ..Parameters::new(comparison.radii[0], self.dl)
+        };
+        base.spaces.check()?;
+        let cloud = self.choice.read(&self.points)?;
+        let count = comparison.metrics.len() * comparison.radii.len();
+        let progress = Progress::of(count as u64, "runs");
+        let done = || progress.step();
+        let runs = match &cloud {
+            AnyCloud::F32(cloud) => compare(cloud, &base, &comparison, &done)?,
+            AnyCloud::F64(cloud) => compare(cloud, &base, &comparison, &done)?,
+            other => {
+                return Err(Failure::from(Error::Shape {
+                    found: format!("coordinates of type {}", other.scalar_name()),
+                    expected: "f32 or f64".into(),
+                }));
+            }
+        };
+        drop(progress);
+        let lanes: Vec<Lane<'_>> = (runs.chunks(comparison.radii.len()))
+            .map(|runs| Lane {
+                name: runs[0].metric.to_string(),
+                runs,
+            })
+            .collect();
+        let text = match output::extension(&self.output).as_str() {
+            "html" => self.page(&lanes, &cloud),
+            "svg" => svg(&lanes, true) + "\n",
+            "csv" => self.table(&runs),
+            _ => self.json(&runs, &lanes, &comparison, &base),
+        };
+        write_bytes_whole(&self.output, text.as_bytes())?;
+        let mut lines: Vec<String> = (lanes.iter())
+            .map(|lane| format!("{} works at eps {}", lane.name, lane.told()))
+            .collect();
+        lines.push(format!(
+            "{}: {}",
+            self.output.display(),
+            counted(count, "run")
+        ));
+        say(lines.join("\n"))
+    }
+
+    /// What was compared, in lines of name and value.
+    fn facts(&self, cloud: &AnyCloud) -> Vec<(&'static str, String)> {
+        let mut facts = vec![
+            (
+                "points",
+                format!("{} in R^{}", cloud.len(), cloud.dimension()),
+            ),
+            ("landmark separation dl", self.dl.to_string()),
+            (
+                "eps is the radius of",
+                match self.analysis_eps {
+                    _ if self.surface => "the charts (no curve is looked for)".into(),
+                    Some(eps) => format!("the charts (neighborhoods: {eps})"),
+                    None => "neighborhoods and charts".into(),
+                },
+            ),
+            (
+                "geodesic graph",
+                match (self.graph.graph_eps, self.graph.graph_k) {
+                    (Some(radius), _) => format!("points nearer than {radius}"),
+                    (None, Some(count)) => format!("the {count} nearest points"),
+                    (None, None) => "the 30 nearest points".into(),
+                },
+            ),
+            (
+                "lifted weight",
+                self.graph.lift.map_or("2 eps".into(), |w| w.to_string()),
+            ),
+        ];
+        if let Some(known) = self.betti {
+            facts.push(("known Betti numbers", betti(known)));
+        }
+        facts
+    }
+
+    fn page(&self, lanes: &[Lane<'_>], cloud: &AnyCloud) -> String {
+        let title = escaped(&super::picture::title(&self.points));
+        let mut out = format!(
+            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
+             content=\"width=device-width\">\n<title>{title}: metrics compared</title>\n<style>{PAGE}{STYLE}</style>\n\
+             </head>\n<body>\n<h1>{title}: metrics compared</h1>\n<ul>\n"
+        );
+        // Writing to a string cannot fail.
+        for lane in lanes {
+            let (name, told) = (escaped(&lane.name), lane.told());
+            let _ = writeln!(out, "<li><b>{name}</b> works at eps {told}</li>");
+        }
+        let _ = writeln!(
+            out,
+            "</ul>\n<div class=\"wide\">{}</div>",
+            svg(lanes, false)
+        );
+        out.push_str("<table class=\"facts\">\n");
+        for (name, value) in self.facts(cloud) {
+            let _ = writeln!(out, "<tr><th>{name}</th><td>{}</td></tr>", escaped(&value));
+        }
+        out.push_str(
+            "</table>\n<div class=\"wide\"><table>\n<tr><th>metric</th><th>eps</th><th>mesh</th><th>Betti numbers over \
+             Q</th><th>over Z/2</th><th>vertices</th><th>charts lose, mean</th><th>at most</th><th>seconds</th>\
+             <th>reason</th></tr>\n",
+        );
+        for (k, lane) in lanes.iter().enumerate() {
+            for run in lane.runs {
+                let numbers = |b: Option<[usize; 3]>| b.map_or(String::new(), betti);
+                let percent = |share: Option<f64>| {
+                    share.map_or(String::new(), |s| format!("{:.2} %", 100.0 * s))
+                };
+                let _ = writeln!(
+                    out,
+                    "<tr><td class=\"m{}\">{}</td><td>{}</td><td class=\"{}\">{}</td><td>{}</td><td>{}</td><td>{}</td>\
+                     <td>{}</td><td>{}</td><td>{}</td><td class=\"reason\">{}</td></tr>",
+                    k % 3,
+                    escaped(&lane.name),
+                    run.eps,
+                    if run.works() { "works" } else { "not" },
+                    word(run.state),
+                    numbers(run.betti),
+                    numbers(run.betti_mod_2),
+                    run.vertices.map_or(String::new(), |v| v.to_string()),
+                    percent(run.distortion.map(|d| d.mean)),
+                    percent(run.distortion.map(|d| d.max)),
+                    run.seconds.map_or(String::new(), |s| format!("{s:.1}")),
+                    escaped(run.reason.as_deref().unwrap_or("")),
+                );
+            }
+        }
+        out.push_str("</table></div>\n</body>\n</html>\n");
+        out
+    }
+
+    fn table(&self, runs: &[ComparedRun]) -> String {
+        let mut out = String::from(
+            "metric,eps,state,b0,b1,b2,b0_mod_2,b1_mod_2,b2_mod_2,vertices,triangles,distortion_mean,distortion_max",
+        );
+        out.push_str(if self.times {
+            ",seconds,reason\n"
+        } else {
+            ",reason\n"
+        });
+        for run in runs {
+            let three = |b: Option<[usize; 3]>| match b {
+                Some([a, b, c]) => format!("{a},{b},{c}"),
+                None => ",,".into(),
+            };
+            let count = |c: Option<usize>| c.map_or(String::new(), |c| c.to_string());
+            let share = |s: Option<f64>| s.map_or(String::new(), |s| format!("{s:.6}"));
+            let state = match run.state {
+                RunState::Verified => "verified",
+                RunState::OtherBetti => "other-betti",
+                RunState::Refused => "refused",
+                RunState::Failed => "failed",
+            };
+            let _ = write!(
+                out,
+                "{},{},{state},{},{},{},{},{},{}",
+                run.metric,
+                run.eps,
+                three(run.betti),
+                three(run.betti_mod_2),
+                count(run.vertices),
+                count(run.triangles),
+                share(run.distortion.map(|d| d.mean)),
+                share(run.distortion.map(|d| d.max)),
+            );
+            if self.times {
+                let _ = write!(out, ",{:.3}", run.seconds.unwrap_or(0.0));
+            }
+            let reason = run.reason.as_deref().unwrap_or("").replace('"', "\"\"");
+            let _ = writeln!(out, ",\"{reason}\"");
+        }
+        out
+    }
+
+    fn json(
+        &self,
+        runs: &[ComparedRun],
+        lanes: &[Lane<'_>],
+        comparison: &Comparison,
+        base: &Parameters,
+    ) -> String {
+        let mut runs = runs.to_vec();
+        if !self.times {
+            runs.iter_mut().for_each(|run| run.seconds = None);
+        }
+        let works: serde_json::Map<String, serde_json::Value> = (lanes.iter())
+            .map(|lane| (lane.name.clone(), json!(lane.intervals())))
+            .collect();
+        pretty(&json!({
+            "crosscap": env!("CARGO_PKG_VERSION"),
+            "points": self.points.display().to_string(),
+            "comparison": comparison,
+            "dl": base.dl,
+            "dt": base.dt,
+            "seed": base.seed,
+            "surface": base.surface,
+            "method": base.method.to_string(),
+            "works": works,
+            "runs": runs,
+        }))
+    }
+}
+
+const PAGE: &str = "\
+:root{color-scheme:light dark}\
+body{font:14px/1.5 system-ui,sans-serif;max-width:960px;margin:24px auto;padding:0 16px;background:#fff;color:#1c1e22}\
+h1{font-size:20px}.wide{overflow-x:auto}svg{max-width:100%;height:auto}\
+table{border-collapse:collapse;font-size:13px;margin:14px 0}\
+th,td{text-align:left;vertical-align:top;padding:3px 12px 3px 0;border-bottom:1px solid #8a909a55}\
+th{font-weight:600}.facts th{font-weight:400;opacity:.75}.works{font-weight:600}.not,.reason{opacity:.8}\
+.reason{min-width:260px}\
+@media (prefers-color-scheme:dark){body{background:#17191d;color:#e8eaee}}";
+
+/// Radii from the first to the second in so many steps.
+fn steps(low: f64, high: f64, count: usize) -> Vec<f64> {
+    let step = |k: usize| low + (high - low) * k as f64 / (count.max(2) - 1) as f64;
+    // Twelve digits: 0.6 + 0.2 is 0.8.
+    let rounded = |x: f64| format!("{x:.12}").parse().unwrap_or(x);
+    (0..count).map(|k| rounded(step(k))).collect()
+}
+
+fn radii(text: &str) -> Result<Radii, String> {
+    let wrong = || {
+        "expected LO:HI:STEPS, two lengths and a number of steps from 2 to 200, such as 0.6:2.2:9, or one length"
+            .to_string()
+    };
+    let parts: Vec<&str> = text.split(':').collect();
+    match parts[..] {
+        [one] => Ok(Radii(vec![positive(one)?])),
+        [low, high, count] => {
+            let (low, high) = (positive(low)?, positive(high)?);
+            let count = count.parse().ok().filter(|c| (2..=200).contains(c));
+            let count = count.ok_or_else(wrong)?;
+            if low < high {
+                Ok(Radii(steps(low, high, count)))
+            } else {
+                Err(format!("{low} is not below {high}"))
+            }
+        }
+        _ => Err(wrong()),
+    }
+}
+
+fn three(text: &str) -> Result<[usize; 3], String> {
+    let wrong = || "expected three numbers, such as 1,1,0".to_string();
+    let numbers: Result<Vec<usize>, _> = text.split(',').map(|t| t.trim().parse()).collect();
+    let numbers = numbers.map_err(|_| wrong())?;
+    numbers.try_into().map_err(|_| wrong())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radii_are_round_and_in_order() {
+        let nine = radii("0.6:2.2:9").unwrap().0;
+        assert_eq!(nine, [0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2]);
+        assert_eq!(radii("0.5").unwrap().0, [0.5]);
+        for wrong in ["", "1:2", "2:1:3", "1:2:1", "0:1:3", "a:2:3", "1:2:3:4"] {
+            assert!(radii(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(three("1,1,0"), Ok([1, 1, 0]));
+        assert!(three("1,1").is_err() && three("1,x,0").is_err());
+    }
+}

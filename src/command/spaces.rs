@@ -1,0 +1,75 @@
+//! Metrics and neighborhoods as the command line has them.
+
+use super::number::positive;
+use clap::Args;
+use crosscap::{MetricName, Neighborhoods, Spaces};
+use crosscap_backends::geodesic::EdgeRule;
+
+/// What metrics other than the Euclidean one are made with.
+#[derive(Args, Debug, Default)]
+pub struct GraphArguments {
+    /// Join points nearer than this in the graph of geodesic distances, unit of the data: three spacings or more
+    #[arg(long, value_name = "E", value_parser = positive, conflicts_with = "graph_k")]
+    pub graph_eps: Option<f64>,
+
+    /// Join every point to so many nearest ones in the graph of geodesic distances [default: 30]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    pub graph_k: Option<u32>,
+
+    /// How far apart the lifted metric holds two sheets that cross at a right angle, unit of the data
+    /// [default: 2 eps]
+    #[arg(long, value_name = "L", value_parser = positive)]
+    pub lift: Option<f64>,
+}
+
+impl GraphArguments {
+    /// The usual choice with these.
+    pub fn spaces(&self) -> Spaces {
+        let usual = Spaces::default();
+        Spaces {
+            graph: match (self.graph_eps, self.graph_k) {
+                (Some(radius), _) => EdgeRule::Within(radius),
+                (None, Some(count)) => EdgeRule::Nearest(count as usize),
+                (None, None) => usual.graph,
+            },
+            lift: self.lift,
+            ..usual
+        }
+    }
+}
+
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Metrics")]
+pub struct SpaceArguments {
+    /// Distances of the analysis: euclidean, geodesic or lifted
+    ///
+    /// Decides on neighborhoods, landmarks and cells. geodesic: shortest paths through a graph of neighbors. lifted:
+    /// position and tangent plane together, which takes crossing sheets apart: the mesh is that of the surface before
+    /// it was made to cross itself.
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub metric: MetricName,
+
+    /// Distances of the charts: euclidean, geodesic or lifted [default: those of the analysis]
+    #[arg(long, visible_alias = "triangulation-metric", value_name = "NAME")]
+    pub tri_metric: Option<MetricName>,
+
+    #[command(flatten)]
+    pub graph: GraphArguments,
+
+    /// Size of the neighborhoods of the analysis: radius (eps everywhere), k-nearest:K (as far as the K nearest other
+    /// points) or adaptive:K (from that up to eps, as large as they look flat)
+    #[arg(long, value_name = "POLICY", default_value_t)]
+    pub neighborhoods: Neighborhoods,
+}
+
+impl SpaceArguments {
+    /// The choice for the pipeline.
+    pub fn spaces(&self) -> Spaces {
+        Spaces {
+            metric: self.metric,
+            tri_metric: self.tri_metric,
+            neighborhoods: self.neighborhoods,
+            ..self.graph.spaces()
+        }
+    }
+}

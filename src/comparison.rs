@@ -1,0 +1,216 @@
+//! Which metric, and up to which radius: the same points by several metrics at several radii.
+
+use crate::pipeline::{Parameters, Pipeline};
+use crate::spaces::{MetricName, Spaces};
+use crate::watched::Distortion;
+use crosscap_backends::parallel::Threads;
+use crosscap_core::{Error, PointCloud, Scalar};
+use serde::Serialize;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// What is compared.
+///
+/// The radius of a run is eps *and* the radius of the charts, as in the paper, where one radius
+/// serves both: charts are not kept at 3 dl, as they are otherwise.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// The metrics, each for the analysis and for the charts.
+    pub metrics: Vec<MetricName>,
+    /// The radii, unit of the data.
+    pub radii: Vec<f64>,
+    /// Radius of the analysis, where it is not to be that of the charts.
+    pub analysis_eps: Option<f64>,
+    /// Fit tolerance dp; a fifth of eps when left out.
+    pub dp: Option<f64>,
+    /// Curve tolerance eps_p; a tenth of eps when left out.
+    pub ep: Option<f64>,
+    /// Betti numbers over Q that the surface is known to have.
+    pub betti: Option<[usize; 3]>,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RunState {
+    /// A verified mesh.
+    Verified,
+    /// A verified mesh with other Betti numbers than the known ones.
+    OtherBetti,
+    /// A mesh that is not verified.
+    Refused,
+    /// No mesh.
+    Failed,
+}
+
+/// One metric at one radius.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ComparedRun {
+    /// Metric of analysis and charts.
+    pub metric: MetricName,
+    /// Radius of analysis and charts, unit of the data.
+    pub eps: f64,
+    /// How it ended.
+    pub state: RunState,
+    /// Betti numbers over Q of the mesh.
+    pub betti: Option<[usize; 3]>,
+    /// Betti numbers over Z/2 of the mesh.
+    pub betti_mod_2: Option<[usize; 3]>,
+    /// Vertices of the mesh.
+    pub vertices: Option<usize>,
+    /// Triangles of the mesh.
+    pub triangles: Option<usize>,
+    /// What the charts lose.
+    pub distortion: Option<Distortion>,
+    /// Why there is no verified mesh, or what speaks against one that is verified.
+    pub reason: Option<String>,
+    /// Seconds on one thread.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
+}
+
+impl ComparedRun {
+    /// Whether it gave a verified mesh, and not with Betti numbers known to be wrong.
+    pub fn works(&self) -> bool {
+        self.state == RunState::Verified
+    }
+}
+
+/// Runs every metric at every radius, each run on one thread, and calls `done` after each. The
+/// result is in the order of metrics, then radii, and but for the seconds the same for any number of
+/// threads.
+///
+/// # Errors
+/// [`Error::Parameter`] where no metric or no radius is given; what goes wrong in a run is in its
+/// [`ComparedRun::reason`].
+pub fn compare<S: Scalar>(
+    cloud: &PointCloud<S>,
+    base: &Parameters,
+    comparison: &Comparison,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<ComparedRun>, Error> {
+    let needs = |name, count| {
+        (count > 0).then_some(()).ok_or_else(|| Error::Parameter {
+            name,
+            value: "none".into(),
+            expected: "at least one".into(),
+        })
+    };
+    needs("metrics", comparison.metrics.len())?;
+    needs("eps", comparison.radii.len())?;
+    let jobs: Vec<(MetricName, f64)> = (comparison.metrics.iter())
+        .flat_map(|&metric| comparison.radii.iter().map(move |&eps| (metric, eps)))
+        .collect();
+    // Plain threads: one of a pool would take up another run while its own waits for the pool inside.
+    let count = Threads::new(base.threads.unwrap_or(0))?.count();
+    let runs: Vec<OnceLock<ComparedRun>> = jobs.iter().map(|_| OnceLock::new()).collect();
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..count.min(jobs.len()) {
+            scope.spawn(|| {
+                loop {
+                    let k = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(&(metric, eps)) = jobs.get(k) else {
+                        break;
+                    };
+                    // Every job is taken once, so setting it cannot fail.
+                    let _ = runs[k].set(one(cloud, base, comparison, metric, eps));
+                    done();
+                }
+            });
+        }
+    });
+    Ok(runs.into_iter().filter_map(OnceLock::into_inner).collect())
+}
+
+fn one<S: Scalar>(
+    cloud: &PointCloud<S>,
+    base: &Parameters,
+    comparison: &Comparison,
+    metric: MetricName,
+    radius: f64,
+) -> ComparedRun {
+    let eps = comparison.analysis_eps.unwrap_or(radius);
+    let usual = Parameters::new(eps, base.dl);
+    let parameters = Parameters {
+        eps,
+        tri_eps: Some(radius),
+        dp: comparison.dp.unwrap_or(usual.dp),
+        ep: comparison.ep.unwrap_or(usual.ep),
+        spaces: Spaces {
+            metric,
+            tri_metric: None,
+            wide_charts: true,
+            ..base.spaces.clone()
+        },
+        threads: Some(1),
+        ..base.clone()
+    };
+    let since = Instant::now();
+    let outcome = Pipeline::new(parameters).and_then(|mut p| p.reconstruct(cloud));
+    let seconds = Some(since.elapsed().as_secs_f64());
+    let mut run = ComparedRun {
+        metric,
+        eps: radius,
+        state: RunState::Failed,
+        betti: None,
+        betti_mod_2: None,
+        vertices: None,
+        triangles: None,
+        distortion: None,
+        reason: None,
+        seconds,
+    };
+    let outcome = match outcome {
+        Ok(outcome) => outcome,
+        Err(error) => {
+            run.reason = Some(error.to_string());
+            return run;
+        }
+    };
+    let betti = outcome.homology.betti_rational;
+    run.betti = Some(betti);
+    run.betti_mod_2 = Some(outcome.homology.betti_mod2);
+    run.vertices = Some(outcome.mesh.complex.vertices);
+    run.triangles = Some(outcome.mesh.complex.triangles.len());
+    run.distortion = Some(outcome.report.chart_distortion);
+    let known = comparison.betti.filter(|&known| known != betti);
+    if !outcome.is_verified() {
+        run.state = RunState::Refused;
+        let violations = outcome.certificate.violations().map(ToString::to_string);
+        let mut reasons = outcome
+            .failures
+            .iter()
+            .map(ToString::to_string)
+            .chain(violations);
+        run.reason = reasons.next();
+        let more = reasons.count();
+        if let (Some(reason), 1..) = (&mut run.reason, more) {
+            reason.push_str(&format!(" (and {more} more)"));
+        }
+    } else if let Some(known) = known {
+        run.state = RunState::OtherBetti;
+        run.reason = Some(format!("the surface is known to have {known:?}"));
+    } else {
+        run.state = RunState::Verified;
+        let warnings = outcome.report.warnings.iter().map(ToString::to_string);
+        run.reason = warnings.reduce(|a, b| a + "; " + &b);
+    }
+    run
+}
+
+/// The runs of neighboring radii that all work, as first and last radius, in order; `runs` are
+/// those of one metric, by radius.
+///
+/// ```
+/// use crosscap::comparison::intervals;
+/// let works = [false, true, true, false, true];
+/// assert_eq!(intervals(&[1.0, 2.0, 3.0, 4.0, 5.0], &works), [[2.0, 3.0], [5.0, 5.0]]);
+/// ```
+pub fn intervals(radii: &[f64], works: &[bool]) -> Vec<[f64; 2]> {
+    let both: Vec<(f64, bool)> = radii.iter().copied().zip(works.iter().copied()).collect();
+    let alike = both.chunk_by(|a, b| a.1 == b.1);
+    let working = alike.filter(|chunk| chunk[0].1);
+    working.map(|c| [c[0].0, c[c.len() - 1].0]).collect()
+}
