@@ -5,7 +5,7 @@ use crate::spaces::{MetricName, Spaces};
 use crate::watched::Distortion;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{Error, PointCloud, Scalar};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -14,7 +14,7 @@ use std::time::Instant;
 ///
 /// The radius of a run is eps *and* the radius of the charts, as in the paper, where one radius
 /// serves both: charts are not kept at 3 dl, as they are otherwise.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// The metrics, each for the analysis and for the charts.
     pub metrics: Vec<MetricName>,
@@ -31,7 +31,7 @@ pub struct Comparison {
 }
 
 /// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RunState {
     /// A verified mesh.
@@ -45,7 +45,7 @@ pub enum RunState {
 }
 
 /// One metric at one radius.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ComparedRun {
     /// Metric of analysis and charts.
     pub metric: MetricName,
@@ -66,7 +66,7 @@ pub struct ComparedRun {
     /// Why there is no verified mesh, or what speaks against one that is verified.
     pub reason: Option<String>,
     /// Seconds on one thread.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
 }
 

@@ -6,12 +6,12 @@ use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric, GraphReport, GraphWarning};
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{Error, MetricSpace, NeighborhoodOracle, PointCloud, Scalar};
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
 /// A metric on the points, by name.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MetricName {
     /// Straight lines.

@@ -1,11 +1,11 @@
 //! A chart that remembers how much it lost.
 
 use crosscap_core::{Chart, Error, LocalChart};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
 
 /// Shares of the squared distances that charts do not carry, 0 (all flat) to 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Distortion {
     /// Mean over all charts that were made, those of repairs included.
     pub mean: f64,

@@ -13,21 +13,27 @@ use clap::Args;
 use crosscap::comparison::{ComparedRun, Comparison, RunState, compare};
 use crosscap::{MetricName, Parameters};
 use crosscap_backends::files::{AnyCloud, read_indices, write_bytes_whole};
+use crosscap_backends::geodesic::EdgeRule;
 use crosscap_core::Error;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "Every metric is used for the analysis and for the charts, at every radius; the radius is that of the neighborhoods and
 of the charts alike, as in the paper (`reconstruct` keeps charts at 3 dl, where a radius that is too large does no harm).
 With --analysis-eps only the charts vary.
 
 A page has the plot with its table below; .svg is the plot alone; .csv and .json are the table, the same for any number
-of threads: seconds are in them only with --times.
+of threads: seconds are in them only with --times. Instead of points a .json that was written before may be given, to
+draw it again without running anything.
 
 Examples:
   crosscap compare klein.npy --dl 0.25 --surface --eps 0.6:2.2:9 -o klein.html
   crosscap compare klein.npy --dl 0.25 --surface --eps 0.6:2.2:9 --metrics euclidean,geodesic --betti 1,1,0 -o klein.csv
+  crosscap compare klein.npy --dl 0.25 --surface --eps 0.6:2.2:9 --times -o klein.json -o klein.html
+  crosscap compare klein.json -o klein.svg
   crosscap compare points.npy --dl 0.15 --eps 0.3:0.9:7 --analysis-eps 0.2 --dt 0.075 -o charts.html";
 
 /// The formats of a comparison.
@@ -40,13 +46,13 @@ const USUAL_STEPS: usize = 8;
 #[derive(Args, Debug)]
 #[command(after_long_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Compare {
-    /// Points: .npy, .npz, .csv, .txt, .xyz, .pdb, .ply or .mat, one point a row
+    /// Points: .npy, .npz, .csv, .txt, .xyz, .pdb, .ply or .mat, one point a row; or a .json of this command
     #[arg(value_name = "POINTS")]
     points: PathBuf,
 
-    /// What to write: .html (a page), .svg (the plot), .csv or .json (the table)
-    #[arg(short, long, value_name = "FILE")]
-    output: PathBuf,
+    /// What to write: .html (a page), .svg (the plot), .csv or .json (the table); may be repeated
+    #[arg(short, long, value_name = "FILE", required = true)]
+    output: Vec<PathBuf>,
 
     /// The metrics, separated by commas: euclidean, geodesic, lifted
     #[arg(
@@ -67,7 +73,7 @@ pub struct Compare {
 
     /// Separation of the landmarks, unit of the data
     #[arg(long, visible_alias = "landmark-separation", value_name = "L", value_parser = positive)]
-    dl: f64,
+    dl: Option<f64>,
 
     /// Tolerance of the local dimension, 0 to 1
     #[arg(long, visible_alias = "dimension-tolerance", value_name = "T", value_parser = share, default_value_t = DIMENSION_TOLERANCE)]
@@ -120,19 +126,101 @@ pub struct Compare {
 #[derive(Clone, Debug, PartialEq)]
 struct Radii(Vec<f64>);
 
+/// A comparison that was made, with what it was made from.
+#[derive(Serialize, Deserialize)]
+struct Table {
+    crosscap: String,
+    /// Name of the file, without folder and extension.
+    title: String,
+    points: usize,
+    dimension: usize,
+    comparison: Comparison,
+    dl: f64,
+    dt: f64,
+    seed: u64,
+    surface: bool,
+    method: String,
+    /// Edges of the graph of geodesic distances, in words.
+    graph: String,
+    /// Weight of the lifted metric, in words.
+    lift: String,
+    /// By metric, the first and the last radius of every interval in which it works.
+    works: BTreeMap<String, Vec<[f64; 2]>>,
+    runs: Vec<ComparedRun>,
+}
+
 impl Compare {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Failure> {
-        output::check(&self.output, OUTPUTS)?;
         let mut inputs = vec![self.points.as_path()];
         inputs.extend(self.boundary.as_deref());
-        output::distinct(&inputs, &[&self.output])?;
+        let outputs: Vec<&Path> = self.output.iter().map(PathBuf::as_path).collect();
+        for path in &outputs {
+            output::check(path, OUTPUTS)?;
+        }
+        output::distinct(&inputs, &outputs)?;
+        let table = if output::extension(&self.points) == "json" {
+            self.earlier()?
+        } else {
+            self.made()?
+        };
+        let lanes = table.lanes();
+        for path in &outputs {
+            let text = match output::extension(path).as_str() {
+                "html" => table.page(&lanes),
+                "svg" => svg(&lanes, true) + "\n",
+                "csv" => table.csv(self.times),
+                _ => table.json(self.times),
+            };
+            write_bytes_whole(path, text.as_bytes())?;
+        }
+        let mut lines: Vec<String> = (lanes.iter())
+            .map(|lane| format!("{} works at eps {}", lane.name, lane.told()))
+            .collect();
+        let runs = counted(table.runs.len(), "run");
+        lines.extend(
+            outputs
+                .iter()
+                .map(|path| format!("{}: {runs}", path.display())),
+        );
+        say(lines.join("\n"))
+    }
+
+    /// The table of a file.
+    fn earlier(&self) -> Result<Table, Failure> {
+        let path = &self.points;
+        let wrong = |what: String| Failure::usage(format!("{}: {what}", path.display()));
+        let text = std::fs::read_to_string(path).map_err(|e| wrong(format!("cannot read: {e}")))?;
+        let table: Table = serde_json::from_str(&text).map_err(|e| {
+            wrong(format!(
+                "{e}; expected what `crosscap compare` writes as .json"
+            ))
+        })?;
+        let expected = table.comparison.metrics.len() * table.comparison.radii.len();
+        if table.runs.len() == expected && expected > 0 {
+            return Ok(table);
+        }
+        Err(wrong(format!(
+            "found {}, expected {expected}, one for each metric and radius",
+            counted(table.runs.len(), "run")
+        )))
+    }
+
+    /// The table of the runs.
+    fn made(&self) -> Result<Table, Failure> {
+        let dl = self.dl.ok_or_else(|| {
+            Failure::usage("--dl is missing: the separation of the landmarks, a third to a half of eps is usual")
+        })?;
         let radii = match &self.eps {
             Some(radii) => radii.0.clone(),
-            None => steps(USUAL[0] * self.dl, USUAL[1] * self.dl, USUAL_STEPS),
+            None => steps(USUAL[0] * dl, USUAL[1] * dl, USUAL_STEPS),
         };
-        let mut metrics = self.metrics.clone();
-        metrics.dedup();
+        let mut metrics: Vec<MetricName> = Vec::new();
+        for &metric in &self.metrics {
+            if !metrics.contains(&metric) {
+                metrics.push(metric);
+            }
+        }
         let comparison = Comparison {
             metrics,
             radii,
@@ -153,7 +241,7 @@ impl Compare {
             method: self.method.into(),
             spaces: self.graph.spaces(),
             threads: threads(self.threads),
-            ..Parameters::new(comparison.radii[0], self.dl)
+            ..Parameters::new(comparison.radii[0], dl)
         };
         base.spaces.check()?;
         let cloud = self.choice.read(&self.points)?;
@@ -171,67 +259,69 @@ impl Compare {
             }
         };
         drop(progress);
-        let lanes: Vec<Lane<'_>> = (runs.chunks(comparison.radii.len()))
+        let mut table = Table {
+            crosscap: env!("CARGO_PKG_VERSION").into(),
+            title: super::picture::title(&self.points),
+            points: cloud.len(),
+            dimension: cloud.dimension(),
+            comparison,
+            dl,
+            dt: base.dt,
+            seed: base.seed,
+            surface: base.surface,
+            method: base.method.to_string(),
+            graph: match base.spaces.graph {
+                EdgeRule::Within(radius) => format!("points nearer than {radius}"),
+                EdgeRule::Nearest(count) => format!("the {count} nearest points"),
+            },
+            lift: (self.graph.lift).map_or("2 eps".into(), |w| w.to_string()),
+            works: BTreeMap::new(),
+            runs,
+        };
+        let works = table.lanes().into_iter();
+        table.works = works
+            .map(|lane| (lane.name.clone(), lane.intervals()))
+            .collect();
+        Ok(table)
+    }
+}
+
+impl Table {
+    fn lanes(&self) -> Vec<Lane<'_>> {
+        (self.runs.chunks(self.comparison.radii.len()))
             .map(|runs| Lane {
                 name: runs[0].metric.to_string(),
                 runs,
             })
-            .collect();
-        let text = match output::extension(&self.output).as_str() {
-            "html" => self.page(&lanes, &cloud),
-            "svg" => svg(&lanes, true) + "\n",
-            "csv" => self.table(&runs),
-            _ => self.json(&runs, &lanes, &comparison, &base),
-        };
-        write_bytes_whole(&self.output, text.as_bytes())?;
-        let mut lines: Vec<String> = (lanes.iter())
-            .map(|lane| format!("{} works at eps {}", lane.name, lane.told()))
-            .collect();
-        lines.push(format!(
-            "{}: {}",
-            self.output.display(),
-            counted(count, "run")
-        ));
-        say(lines.join("\n"))
+            .collect()
     }
 
     /// What was compared, in lines of name and value.
-    fn facts(&self, cloud: &AnyCloud) -> Vec<(&'static str, String)> {
+    fn facts(&self) -> Vec<(&'static str, String)> {
         let mut facts = vec![
-            (
-                "points",
-                format!("{} in R^{}", cloud.len(), cloud.dimension()),
-            ),
+            ("points", format!("{} in R^{}", self.points, self.dimension)),
             ("landmark separation dl", self.dl.to_string()),
             (
                 "eps is the radius of",
-                match self.analysis_eps {
+                match self.comparison.analysis_eps {
                     _ if self.surface => "the charts (no curve is looked for)".into(),
                     Some(eps) => format!("the charts (neighborhoods: {eps})"),
                     None => "neighborhoods and charts".into(),
                 },
             ),
-            (
-                "geodesic graph",
-                match (self.graph.graph_eps, self.graph.graph_k) {
-                    (Some(radius), _) => format!("points nearer than {radius}"),
-                    (None, Some(count)) => format!("the {count} nearest points"),
-                    (None, None) => "the 30 nearest points".into(),
-                },
-            ),
-            (
-                "lifted weight",
-                self.graph.lift.map_or("2 eps".into(), |w| w.to_string()),
-            ),
+            ("method", self.method.clone()),
+            ("geodesic graph", self.graph.clone()),
+            ("lifted weight", self.lift.clone()),
+            ("seed", self.seed.to_string()),
         ];
-        if let Some(known) = self.betti {
+        if let Some(known) = self.comparison.betti {
             facts.push(("known Betti numbers", betti(known)));
         }
         facts
     }
 
-    fn page(&self, lanes: &[Lane<'_>], cloud: &AnyCloud) -> String {
-        let title = escaped(&super::picture::title(&self.points));
+    fn page(&self, lanes: &[Lane<'_>]) -> String {
+        let title = escaped(&self.title);
         let mut out = format!(
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
              content=\"width=device-width\">\n<title>{title}: metrics compared</title>\n<style>{PAGE}{STYLE}</style>\n\
@@ -248,7 +338,7 @@ impl Compare {
             svg(lanes, false)
         );
         out.push_str("<table class=\"facts\">\n");
-        for (name, value) in self.facts(cloud) {
+        for (name, value) in self.facts() {
             let _ = writeln!(out, "<tr><th>{name}</th><td>{}</td></tr>", escaped(&value));
         }
         out.push_str(
@@ -256,51 +346,48 @@ impl Compare {
              Q</th><th>over Z/2</th><th>vertices</th><th>charts lose, mean</th><th>at most</th><th>seconds</th>\
              <th>reason</th></tr>\n",
         );
-        for (k, lane) in lanes.iter().enumerate() {
-            for run in lane.runs {
-                let numbers = |b: Option<[usize; 3]>| b.map_or(String::new(), betti);
-                let percent = |share: Option<f64>| {
-                    share.map_or(String::new(), |s| format!("{:.2} %", 100.0 * s))
-                };
-                let _ = writeln!(
-                    out,
-                    "<tr><td class=\"m{}\">{}</td><td>{}</td><td class=\"{}\">{}</td><td>{}</td><td>{}</td><td>{}</td>\
-                     <td>{}</td><td>{}</td><td>{}</td><td class=\"reason\">{}</td></tr>",
-                    k % 3,
-                    escaped(&lane.name),
-                    run.eps,
-                    if run.works() { "works" } else { "not" },
-                    word(run.state),
-                    numbers(run.betti),
-                    numbers(run.betti_mod_2),
-                    run.vertices.map_or(String::new(), |v| v.to_string()),
-                    percent(run.distortion.map(|d| d.mean)),
-                    percent(run.distortion.map(|d| d.max)),
-                    run.seconds.map_or(String::new(), |s| format!("{s:.1}")),
-                    escaped(run.reason.as_deref().unwrap_or("")),
-                );
-            }
+        let numbers = |b: Option<[usize; 3]>| b.map_or(String::new(), betti);
+        let percent =
+            |share: Option<f64>| share.map_or(String::new(), |s| format!("{:.2} %", 100.0 * s));
+        for (k, run) in self.runs.iter().enumerate() {
+            let _ = writeln!(
+                out,
+                "<tr><td class=\"m{}\">{}</td><td>{}</td><td class=\"{}\">{}</td><td>{}</td><td>{}</td><td>{}</td>\
+                 <td>{}</td><td>{}</td><td>{}</td><td class=\"reason\">{}</td></tr>",
+                k / self.comparison.radii.len() % 3,
+                run.metric,
+                run.eps,
+                if run.works() { "works" } else { "not" },
+                word(run.state),
+                numbers(run.betti),
+                numbers(run.betti_mod_2),
+                run.vertices.map_or(String::new(), |v| v.to_string()),
+                percent(run.distortion.map(|d| d.mean)),
+                percent(run.distortion.map(|d| d.max)),
+                run.seconds.map_or(String::new(), |s| format!("{s:.1}")),
+                escaped(run.reason.as_deref().unwrap_or("")),
+            );
         }
         out.push_str("</table></div>\n</body>\n</html>\n");
         out
     }
 
-    fn table(&self, runs: &[ComparedRun]) -> String {
+    fn csv(&self, times: bool) -> String {
         let mut out = String::from(
             "metric,eps,state,b0,b1,b2,b0_mod_2,b1_mod_2,b2_mod_2,vertices,triangles,distortion_mean,distortion_max",
         );
-        out.push_str(if self.times {
+        out.push_str(if times {
             ",seconds,reason\n"
         } else {
             ",reason\n"
         });
-        for run in runs {
-            let three = |b: Option<[usize; 3]>| match b {
-                Some([a, b, c]) => format!("{a},{b},{c}"),
-                None => ",,".into(),
-            };
-            let count = |c: Option<usize>| c.map_or(String::new(), |c| c.to_string());
-            let share = |s: Option<f64>| s.map_or(String::new(), |s| format!("{s:.6}"));
+        let three = |b: Option<[usize; 3]>| match b {
+            Some([a, b, c]) => format!("{a},{b},{c}"),
+            None => ",,".into(),
+        };
+        let count = |c: Option<usize>| c.map_or(String::new(), |c| c.to_string());
+        let share = |s: Option<f64>| s.map_or(String::new(), |s| format!("{s:.6}"));
+        for run in &self.runs {
             let state = match run.state {
                 RunState::Verified => "verified",
                 RunState::OtherBetti => "other-betti",
@@ -319,8 +406,9 @@ impl Compare {
                 share(run.distortion.map(|d| d.mean)),
                 share(run.distortion.map(|d| d.max)),
             );
-            if self.times {
-                let _ = write!(out, ",{:.3}", run.seconds.unwrap_or(0.0));
+            if times {
+                let seconds = run.seconds.map_or(String::new(), |s| format!("{s:.3}"));
+                let _ = write!(out, ",{seconds}");
             }
             let reason = run.reason.as_deref().unwrap_or("").replace('"', "\"\"");
             let _ = writeln!(out, ",\"{reason}\"");
@@ -328,32 +416,14 @@ impl Compare {
         out
     }
 
-    fn json(
-        &self,
-        runs: &[ComparedRun],
-        lanes: &[Lane<'_>],
-        comparison: &Comparison,
-        base: &Parameters,
-    ) -> String {
-        let mut runs = runs.to_vec();
-        if !self.times {
-            runs.iter_mut().for_each(|run| run.seconds = None);
+    fn json(&self, times: bool) -> String {
+        let mut all = json!(self);
+        if !times && let Some(runs) = all["runs"].as_array_mut() {
+            for run in runs.iter_mut().filter_map(|run| run.as_object_mut()) {
+                run.remove("seconds");
+            }
         }
-        let works: serde_json::Map<String, serde_json::Value> = (lanes.iter())
-            .map(|lane| (lane.name.clone(), json!(lane.intervals())))
-            .collect();
-        pretty(&json!({
-            "crosscap": env!("CARGO_PKG_VERSION"),
-            "points": self.points.display().to_string(),
-            "comparison": comparison,
-            "dl": base.dl,
-            "dt": base.dt,
-            "seed": base.seed,
-            "surface": base.surface,
-            "method": base.method.to_string(),
-            "works": works,
-            "runs": runs,
-        }))
+        pretty(&all)
     }
 }
 
