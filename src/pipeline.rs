@@ -453,6 +453,18 @@ impl<S: Scalar> Pipeline<S> {
         // The metric knows the rows as they are, copies included.
         let own_metric =
             given.is_some() || self.analysis_metric.is_some() || self.chart_metric.is_some();
+        for custom in [&self.analysis_metric, &self.chart_metric]
+            .into_iter()
+            .flatten()
+        {
+            let count = custom.metric().len();
+            if count != cloud.len() {
+                return Err(Error::Shape {
+                    found: format!("a metric on {count} points"),
+                    expected: format!("{}, as many as there are", cloud.len()),
+                });
+            }
+        }
         let (cloud, rows) = if duplicates == 0 || own_metric {
             (cloud.clone(), (0..cloud.len()).collect())
         } else {

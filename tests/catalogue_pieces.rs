@@ -72,8 +72,8 @@ fn closed_surfaces_that_cross_in_two_circles() {
             40_000,
             0.35,
             0.17,
-            "One torus and one sphere. The torus and the sphere meet in two circles, each two-sided on the torus and \
-             two-sided on the sphere (crossing angle",
+            "One sphere and one torus. The sphere and the torus meet in two circles, each two-sided on the sphere and \
+             two-sided on the torus (crossing angle",
         ),
         (
             "two_tori",

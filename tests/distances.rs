@@ -190,7 +190,7 @@ fn metrics_are_chosen_separately() {
 #[test]
 fn policies_of_neighborhoods_find_the_crossing() {
     let cloud = points("two_spheres", 12_000);
-    for neighborhoods in [Neighborhoods::Nearest(60), Neighborhoods::Adaptive(40)] {
+    for neighborhoods in [Neighborhoods::Nearest(60), Neighborhoods::Adaptive(60)] {
         let mut parameters = with(MetricName::Euclidean, None);
         parameters.spaces.neighborhoods = neighborhoods;
         let outcome = Pipeline::new(parameters)

@@ -164,7 +164,12 @@ fn two_planes() {
 #[test]
 fn boundary() {
     let model = Boundary::new(0.1, 0.05).unwrap();
-    laws::model(&settings(), &model, &Instances::new(&instances::boundary)).unwrap();
+    let instances = Instances {
+        // The curve is as sharp as the sample: with fewer points the outermost ones leave wide notches.
+        points: 400..=800,
+        ..Instances::new(&instances::boundary)
+    };
+    laws::model(&settings(), &model, &instances).unwrap();
 }
 
 #[test]
@@ -194,7 +199,11 @@ fn isolated_crossing() {
 #[test]
 fn curve_through_sheet() {
     let model = CurveThroughSheet::new(0.1, 0.05).unwrap();
-    let instances = exact_to(1e-6, &instances::line_through_plane);
+    let instances = Instances {
+        // A fifth of them are on the line, and two thirds of those in the neighborhood.
+        points: 150..=400,
+        ..exact_to(1e-6, &instances::line_through_plane)
+    };
     laws::model(&settings(), &model, &instances).unwrap();
 }
 

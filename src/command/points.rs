@@ -205,7 +205,10 @@ mod tests {
             for atom in 0..8 {
                 for (element, stretch) in [("C", 1.0), ("H", 1.4)] {
                     let place = nalgebra::Vector3::from_column_slice(&p[3 * atom..3 * atom + 3]);
-                    let q = turn * (place * stretch) + shift;
+                    // Hydrogens lean to one side, so that masses matter.
+                    let lean =
+                        nalgebra::Vector3::new(0.0, 0.0, 0.3 * (stretch - 1.0) * atom as f64);
+                    let q = turn * (place * stretch + lean) + shift;
                     let (x, y, z) = (q.x, q.y, q.z);
                     xyz += &format!("{element} {x:.9} {y:.9} {z:.9}\n");
                     pdb += &format!(

@@ -120,21 +120,36 @@ impl Fit {
         let mut sheets = Sheets::new(&[plane], &all, 0, local.radius, |_, d, _| d);
         let mut sheet = sheets.patches.swap_remove(0);
         let mut curve: Option<QuadraticCurve> = None;
-        for _ in 0..3 {
+        for round in 0..4 {
+            // The first plane may be tilted by points of the curve: its sheet is taken thicker.
+            let thickness = if round == 0 {
+                ep.max(PLANE_TOLERANCE * local.radius)
+            } else {
+                ep
+            };
             // Points of the curve that are near the sheet would bend it.
             let near: Vec<Vector3<f64>> = points
                 .iter()
                 .filter(|x| {
                     let clear = |c: &QuadraticCurve| (c.foot(x) - **x).norm() > CLEAR * ep;
-                    sheet.signed_distance(x).abs() < ep && curve.as_ref().is_none_or(clear)
+                    sheet.signed_distance(x).abs() < thickness && curve.as_ref().is_none_or(clear)
                 })
                 .copied()
                 .collect();
+            // Over the plane of its own points: heights are then small, and exact where the sheet is flat.
+            if let Some(plane) = Flat::of(near.iter().copied()) {
+                sheet = Sheets::new(&[plane], &[], 0, local.radius, |_, d, _| d)
+                    .patches
+                    .swap_remove(0);
+            }
             if !sheet.fit(near.iter().copied(), local.radius) {
                 return Err(Rejection::EmptyStratum {
                     stratum: 3,
                     found: near.len(),
                 });
+            }
+            if round == 0 {
+                continue;
             }
             let beside = off_sheet(&sheet, points, ep);
             curve = Some(QuadraticCurve::fit(&beside).ok_or(Rejection::EmptyStratum {

@@ -14,6 +14,8 @@ pub(super) struct Curves {
     pub(super) rows: Vec<usize>,
     /// How many of them are points.
     pub(super) corners: usize,
+    /// How many cells meet in the curve of each landmark, in the order of `rows`; 0 for points.
+    cells: Vec<u8>,
     /// Chain edges between positions in `rows`.
     pub(super) edges: Vec<CurveEdge>,
     /// References of the corners, in the order of `rows`, where there is one.
@@ -45,6 +47,7 @@ impl Curves {
         out.corner_references = references(analyzer, analysis, &corners);
         out.rows = corners;
         out.corners = out.rows.len();
+        out.cells = vec![0; out.corners];
         for kind in [Role::Boundary, Role::Curve] {
             out.lay(analyzer, analysis, dl, kind);
         }
@@ -323,6 +326,7 @@ impl Curves {
             }
         };
         self.rows.extend(chosen.iter().map(|&k| rows[k]));
+        self.cells.resize(self.rows.len(), cells);
         let position = |k: usize| {
             if k >= first_corner {
                 k - first_corner
@@ -340,19 +344,16 @@ impl Curves {
         }
     }
 
-    /// Joins ends of chains that stop at nothing, nearest pairs first: where the points of
-    /// a curve have a gap.
+    /// Joins ends of chains that stop at nothing, and landmarks of curves that no chain reached, nearest
+    /// pairs first: where the points of a curve have a gap.
     fn join_free_ends(&mut self, analysis: &Analysis, dl: f64) {
         let mut degree = vec![0u32; self.rows.len()];
-        let mut cells = vec![0u8; self.rows.len()];
-        for e in &self.edges {
-            for end in e.ends {
-                degree[end as usize] += 1;
-                cells[end as usize] = e.cells;
-            }
+        for end in self.edges.iter().flat_map(|e| e.ends) {
+            degree[end as usize] += 1;
         }
+        let cells = std::mem::take(&mut self.cells);
         let free: Vec<usize> = (self.corners..self.rows.len())
-            .filter(|&k| degree[k] == 1)
+            .filter(|&k| degree[k] < 2)
             .collect();
         let mut pairs = Vec::new();
         for (x, &a) in free.iter().enumerate() {
@@ -369,7 +370,7 @@ impl Curves {
         }
         pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
         for (_, a, b) in pairs {
-            if degree[a] == 1 && degree[b] == 1 {
+            if degree[a] < 2 && degree[b] < 2 {
                 degree[a] += 1;
                 degree[b] += 1;
                 self.edges

@@ -1,0 +1,157 @@
+//! Singularity models end to end: surfaces that are singular in every way that the program knows,
+//! verified, with the right Betti numbers and links.
+
+use crosscap::pipeline::{Outcome, Parameters, Pipeline};
+use crosscap::prelude::*;
+use crosscap_algorithms::certificate::LinkKind;
+use crosscap_algorithms::singularity::ModelName;
+
+struct Case {
+    surface: &'static str,
+    points: usize,
+    eps: f64,
+    dl: f64,
+    models: &'static [ModelName],
+    betti: [usize; 3],
+    /// Kinds of link that say what was found, with their number where it is known.
+    links: &'static [(LinkKind, Option<usize>)],
+}
+
+const CASES: [Case; 6] = [
+    Case {
+        surface: "three_spheres",
+        points: 60_000,
+        eps: 0.25,
+        dl: 0.1,
+        models: &[ModelName::TwoPlanes, ModelName::TriplePoint],
+        betti: [1, 0, 7],
+        links: &[(LinkKind::Triple, Some(2)), (LinkKind::Double, None)],
+    },
+    Case {
+        surface: "double_bubble",
+        points: 40_000,
+        eps: 0.25,
+        dl: 0.1,
+        models: &[ModelName::YJunction],
+        betti: [1, 0, 2],
+        links: &[(LinkKind::Junction, None)],
+    },
+    Case {
+        surface: "planes_r4",
+        points: 10_000,
+        eps: 0.25,
+        dl: 0.1,
+        models: &[ModelName::IsolatedCrossing, ModelName::Boundary],
+        betti: [1, 0, 0],
+        links: &[(LinkKind::IsolatedCrossing, Some(1)), (LinkKind::Arc, None)],
+    },
+    Case {
+        surface: "line_disc",
+        points: 5_000,
+        eps: 0.35,
+        dl: 0.15,
+        models: &[
+            ModelName::Curve,
+            ModelName::CurveThroughSheet,
+            ModelName::CurveOnSheet,
+            ModelName::Boundary,
+        ],
+        betti: [1, 0, 0],
+        links: &[
+            (LinkKind::CurveThroughSheet, Some(1)),
+            (LinkKind::CurveEnd, Some(2)),
+            (LinkKind::Arc, None),
+        ],
+    },
+    Case {
+        surface: "hemisphere",
+        points: 5_000,
+        eps: 0.25,
+        dl: 0.1,
+        models: &[ModelName::Boundary],
+        betti: [1, 0, 0],
+        links: &[(LinkKind::Arc, None)],
+    },
+    Case {
+        surface: "annulus",
+        points: 5_000,
+        eps: 0.2,
+        dl: 0.08,
+        models: &[ModelName::Boundary],
+        betti: [1, 1, 0],
+        links: &[(LinkKind::Arc, None)],
+    },
+];
+
+fn reconstruct(case: &Case, seed: u64, models: &[ModelName]) -> Outcome {
+    let surface = SampleSurface::find(case.surface).unwrap();
+    let sample = surface.sample(&Sampling::new(case.points, seed)).unwrap();
+    let mut parameters = Parameters::new(case.eps, case.dl);
+    parameters.models = models.to_vec();
+    parameters.seed = seed;
+    Pipeline::new(parameters)
+        .unwrap()
+        .reconstruct(&sample.points)
+        .unwrap()
+}
+
+/// What is wrong with an outcome, if anything.
+fn fault(case: &Case, outcome: &Outcome) -> Option<String> {
+    if !outcome.is_verified() {
+        return Some(format!(
+            "{}: {:?} {:?}",
+            case.surface,
+            outcome.failures,
+            outcome.certificate.verdict()
+        ));
+    }
+    if outcome.homology.betti_rational != case.betti {
+        return Some(format!(
+            "{}: WRONG {:?}",
+            case.surface, outcome.homology.betti_rational
+        ));
+    }
+    let census = &outcome.certificate.links.as_ref()?.census;
+    case.links.iter().find_map(|(kind, count)| {
+        let found = census.get(kind).copied().unwrap_or(0);
+        let right = count.map_or(found > 0, |count| found == count);
+        (!right).then(|| format!("{}: {found} links of kind {kind:?}", case.surface))
+    })
+}
+
+#[test]
+fn every_model_on_its_surface() {
+    for case in &CASES {
+        let outcome = reconstruct(case, 0, case.models);
+        assert_eq!(fault(case, &outcome), None);
+    }
+}
+
+#[test]
+fn models_compete() {
+    for case in &CASES[1..4] {
+        let outcome = reconstruct(case, 1, &ModelName::AUTO);
+        assert_eq!(fault(case, &outcome), None);
+    }
+}
+
+/// `cargo test --release --test models -- --ignored --nocapture`
+#[test]
+#[ignore = "some minutes"]
+fn twenty_seeds() {
+    let mut wrong = 0;
+    for case in &CASES {
+        let faults: Vec<(u64, String)> = (0..20)
+            .filter_map(|seed| {
+                let outcome = reconstruct(case, seed, case.models);
+                fault(case, &outcome).map(|fault| (seed, fault))
+            })
+            .collect();
+        println!("{}: {} of 20", case.surface, 20 - faults.len());
+        for (seed, fault) in &faults {
+            println!("  seed {seed}: {}", &fault[..fault.len().min(200)]);
+        }
+        wrong += faults.iter().filter(|f| f.1.contains("WRONG")).count();
+    }
+    assert_eq!(wrong, 0);
+}
