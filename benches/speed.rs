@@ -435,7 +435,8 @@ fn dimensions(arguments: &[String]) -> Outcome<Value> {
         threads: Some(threads),
         ..Parameters::new(eps, 0.5 * eps)
     };
-    let stages: Rc<RefCell<Vec<(Stage, f64, f64, f64)>>> = Rc::default();
+    type Stages = Vec<(Stage, f64, f64, f64)>;
+    let stages: Rc<RefCell<Stages>> = Rc::default();
     let seen = Rc::clone(&stages);
     let mut pipeline = Pipeline::new(parameters)?.on_stage(move |stage| {
         let now = (stage, cpu(), begin.elapsed().as_secs_f64(), peak());

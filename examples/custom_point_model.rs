@@ -106,7 +106,7 @@ impl SingularityModel for DoubleCone {
         }
         let squares: f64 = fitted.iter().map(|p| cone.distance(p).powi(2)).sum();
         let residual = (squares / fitted.len() as f64).sqrt();
-        if !(residual <= self.dp) {
+        if residual.is_nan() || residual > self.dp {
             return Err(Rejection::PoorFit {
                 residual,
                 limit: self.dp,

@@ -22,6 +22,11 @@ use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::parallel::Threads;
 use std::f64::consts::TAU;
 
+/// A row of the table for spheres and cubes.
+type FlatOrRound = (&'static str, usize, [f64; 3], f64, f64, f64, f64, usize);
+/// A row of the table for surfaces.
+type OfSurface = (&'static str, [f64; 3], f64, f64, f64, f64, usize);
+
 /// Random numbers that a few lines of any language draw: SplitMix64 (Steele, Lea & Flood 2014).
 struct SplitMix(u64);
 
@@ -149,7 +154,7 @@ fn agree(name: &str, found: &Found, expected: &Figures) {
 }
 
 #[rustfmt::skip]
-const FLAT_OR_ROUND: [(&str, usize, [f64; 3], f64, f64, f64, f64, usize); 16] = [
+const FLAT_OR_ROUND: [FlatOrRound; 16] = [
     // Shape, dimension; then the figures.
     ("sphere", 1, [0.9855220243, 1.2148640103, 1.2345531111], 0.9977138775, 0.98740080, 0.980, 1.011, 2),
     ("sphere", 2, [2.6327034054, 2.1294726797, 1.8994946056], 2.0211242242, 2.03992108, 1.879, 1.997, 3),
@@ -170,7 +175,7 @@ const FLAT_OR_ROUND: [(&str, usize, [f64; 3], f64, f64, f64, f64, usize); 16] = 
 ];
 
 #[rustfmt::skip]
-const SURFACES: [(&str, [f64; 3], f64, f64, f64, f64, usize); 9] = [
+const SURFACES: [OfSurface; 9] = [
     ("sphere", [1.9637122305, 3.1167056065, 2.2098728022], 1.9943691854, 1.98110729, 1.877, 2.042, 3),
     ("torus", [2.1368796116, 2.5514414132, 2.1399543883], 1.9832905875, 2.00368193, 1.875, 2.049, 3),
     ("double_torus", [1.6371998266, 1.6509998098, 2.0131966947], 2.0098801738, 2.01118368, 1.922, 2.029, 2),

@@ -161,7 +161,8 @@ fn orthonormalize(basis: &mut DMatrix<f64>) -> bool {
             }
         }
         let square: f64 = own.iter().map(|x| x * x).sum();
-        if !(square > 1e-24 * before) {
+        let left = square > 1e-24 * before;
+        if !left {
             return false;
         }
         let inverse = 1.0 / square.sqrt();

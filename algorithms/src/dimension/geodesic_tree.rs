@@ -173,8 +173,8 @@ mod tests {
     fn by_all_pairs(graph: &NeighborGraph, terminals: &[u32]) -> f64 {
         let n = graph.len();
         let mut d = vec![vec![f64::INFINITY; n]; n];
-        for i in 0..n {
-            d[i][i] = 0.0;
+        for (i, row) in d.iter_mut().enumerate() {
+            row[i] = 0.0;
         }
         for &(a, b, l) in &graph.edges {
             d[a as usize][b as usize] = l;

@@ -37,8 +37,10 @@ fn holds_the_nearest<S: Scalar>(cloud: &PointCloud<S>, count: usize) -> Result<(
         oracle.nearest(i, count + 1, &mut nearest);
         // All of the nearest, and nothing but ties with the last of them behind.
         prop_assert_eq!(&ball[..=count], &nearest[..]);
-        let last = nearest[count].distance;
-        prop_assert!(ball[count + 1..].iter().all(|x| x.distance == last));
+        // Grid distances that are equal differ by rounding.
+        let last = nearest[count].distance.as_f64();
+        let tie = |d: f64| (d - last).abs() <= 1e-5 * last;
+        prop_assert!(ball[count + 1..].iter().all(|x| tie(x.distance.as_f64())));
     }
     Ok(())
 }
@@ -63,7 +65,7 @@ proptest! {
 
     #[test]
     fn radii_grow_with_the_data_and_know_no_order(
-        cloud in grid(), count in 1_usize..8, power in -8_i32..8, turn in 1_usize..9,
+        cloud in grid(), count in 2_usize..8, power in -8_i32..8, turn in 1_usize..9,
     ) {
         let scale = f64::from(power).exp2();
         let scaled = cloud.coordinates().iter().map(|x| x * scale).collect();

@@ -203,7 +203,8 @@ fn orthonormalize(width: usize, ends: &mut [f64], k: usize) -> bool {
         }
     }
     let square = dot(own, own);
-    if !(square > 1e-12 * before) {
+    let left = square > 1e-12 * before;
+    if !left {
         return false;
     }
     let inverse = 1.0 / square.sqrt();
