@@ -30,6 +30,8 @@ const LEAST_MISSING: f64 = 10.0;
 const MOST_BEND: f64 = 3.0;
 /// Times that the parabola is fitted, each time upright over its own tangent.
 const ROUNDS: usize = 3;
+/// Farthest that a center in the band is moved, in ep: a band's width across and one up or down.
+const LARGEST_STEP: f64 = 1.5;
 /// A point off the boundary tells where it is up to this many ep.
 const WITNESS_REACH: f64 = 3.0;
 /// Strips that the area beyond the boundary is summed over.
@@ -148,6 +150,13 @@ impl SingularityModel for Boundary {
             .map(|x| sheet.signed_distance(x).powi(2))
             .sum();
         let residual = self.tolerance.residual(sum, count)?;
+        let off = sheet.signed_distance(&center).abs();
+        if off >= self.tolerance.ep {
+            return Err(Rejection::PoorFit {
+                residual: off,
+                limit: self.tolerance.ep,
+            });
+        }
         // Beyond the neighborhood the parabola is mere extrapolation.
         let labels: Vec<u8> = all
             .iter()
@@ -163,6 +172,10 @@ impl SingularityModel for Boundary {
         let below = Vector3::new(x, y, 0.0);
         let place = Vector3::new(x, y, -sheet.height(&below).0);
         let offset = (place - center).norm();
+        // In the band of the curve and on the sheet, the center is next to its place.
+        if labels[local.center] == 0 && offset > LARGEST_STEP * self.tolerance.ep {
+            return Err(Rejection::NoRealSolution);
+        }
         let (moved, center_offset) =
             if labels[local.center] == 0 || offset < WITNESS_REACH * self.tolerance.ep {
                 (place, offset)

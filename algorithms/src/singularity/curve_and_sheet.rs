@@ -3,7 +3,7 @@
 use super::curve_fit::{QuadraticCurve, STRAIGHT_POINTS};
 use super::flats::{Flat, candidates, greedy};
 use super::patch::{PATCH_POINTS, QuadraticPatch};
-use super::sheets::Sheets;
+use super::sheets::patch_over;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
@@ -78,8 +78,7 @@ struct Fit {
     arcs: [usize; 2],
 }
 
-/// Points farther than this share of the radius from the plane of most points tell that there is
-/// something beside one sheet.
+/// The points farther than `limit` from the sheet.
 fn off_sheet(sheet: &QuadraticPatch, points: &[Vector3<f64>], limit: f64) -> Vec<Vector3<f64>> {
     points
         .iter()
@@ -117,8 +116,7 @@ impl Fit {
         let plane = greedy(points, &found, 1, PLANE_TOLERANCE * local.radius)
             .and_then(|mut planes| planes.pop())
             .ok_or(Rejection::NoRealSolution)?;
-        let mut sheets = Sheets::new(&[plane], &all, 0, local.radius, |_, d, _| d);
-        let mut sheet = sheets.patches.swap_remove(0);
+        let mut sheet = patch_over(&plane);
         let mut curve: Option<QuadraticCurve> = None;
         for round in 0..4 {
             // The first plane may be tilted by points of the curve: its sheet is taken thicker.
@@ -138,9 +136,7 @@ impl Fit {
                 .collect();
             // Over the plane of its own points: heights are then small, and exact where the sheet is flat.
             if let Some(plane) = Flat::of(near.iter().copied()) {
-                sheet = Sheets::new(&[plane], &[], 0, local.radius, |_, d, _| d)
-                    .patches
-                    .swap_remove(0);
+                sheet = patch_over(&plane);
             }
             if !sheet.fit(near.iter().copied(), local.radius) {
                 return Err(Rejection::EmptyStratum {
@@ -159,8 +155,11 @@ impl Fit {
         }
         let beside = off_sheet(&sheet, points, ep);
         let curve = curve.ok_or(Rejection::NoRealSolution)?;
-        let astray = beside
+        // The center need not be among the points that were fitted.
+        let center = all[local.center];
+        let astray = off_sheet(&sheet, &[center], ep)
             .iter()
+            .chain(&beside)
             .map(|x| (curve.foot(x) - x).norm())
             .fold(0.0, f64::max);
         if astray >= ep {
@@ -169,7 +168,7 @@ impl Fit {
                 limit: ep,
             });
         }
-        let mut t = curve.parameter(&all[local.center]);
+        let mut t = curve.parameter(&center);
         let mut height = f64::INFINITY;
         for _ in 0..12 {
             let x = curve.at(t);
@@ -185,8 +184,7 @@ impl Fit {
             }
         }
         let apex = curve.at(t);
-        if height > 1e-6 * local.radius || (apex - all[local.center]).norm() > REACH * local.radius
-        {
+        if height > 1e-6 * local.radius || (apex - center).norm() > REACH * local.radius {
             return Err(Rejection::NoRealSolution);
         }
         let mut labels = vec![0u8; all.len()];

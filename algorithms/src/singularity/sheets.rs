@@ -9,6 +9,14 @@ const ROUNDS: usize = 3;
 /// Patches that meet at a smaller angle (sine) do not locate a curve.
 const LEAST_SINE: f64 = 0.15;
 
+/// The plane itself as a patch.
+pub(super) fn patch_over(plane: &Flat<3>) -> QuadraticPatch {
+    let normal = plane.normals[0];
+    let least = normal.iamin();
+    let tangent = normal.cross(&Vector3::ith(least, 1.0)).normalize();
+    QuadraticPatch::plane(plane.origin, [tangent, normal.cross(&tangent), normal])
+}
+
 /// Quadratic patches with the patch that each point is nearest to.
 pub(super) struct Sheets {
     pub(super) patches: Vec<QuadraticPatch>,
@@ -26,17 +34,8 @@ impl Sheets {
         radius: f64,
         distance: impl Fn(usize, f64, &Vector3<f64>) -> f64,
     ) -> Self {
-        let patches = planes
-            .iter()
-            .map(|plane| {
-                let normal = plane.normals[0];
-                let least = normal.iamin();
-                let tangent = normal.cross(&Vector3::ith(least, 1.0)).normalize();
-                QuadraticPatch::plane(plane.origin, [tangent, normal.cross(&tangent), normal])
-            })
-            .collect();
         let mut sheets = Self {
-            patches,
+            patches: planes.iter().map(patch_over).collect(),
             owner: vec![0; points.len()],
         };
         sheets.assign(points, &distance);

@@ -1,6 +1,7 @@
 //! Two sheets that cross in a curve: the quadric that factors into two planes.
 
 use super::patch::{PATCH_POINTS, QuadraticPatch};
+use super::tolerance::{Tolerance, at_least, vectors};
 use crosscap_core::{
     Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
@@ -256,8 +257,7 @@ const fn position([i, j, k]: [usize; 3]) -> usize {
 /// center, when it is singular, is moved onto the curve in which the patches meet, by Newton's method.
 #[derive(Clone, Copy, Debug)]
 pub struct TwoPlanes {
-    dp: f64,
-    ep: f64,
+    tolerance: Tolerance,
     /// Rounds of the refinement by equation (5); 0 is the direct estimate alone.
     pub refinement_rounds: usize,
     /// Whether sheets are curved (quadratic patches) or the planes themselves, as in the paper.
@@ -289,18 +289,8 @@ impl TwoPlanes {
     /// # Errors
     /// [`Error::Parameter`] unless both are positive and finite.
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
-        for (name, value) in [("dp", dp), ("ep", ep)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::Parameter {
-                    name,
-                    value: value.to_string(),
-                    expected: "a positive length".into(),
-                });
-            }
-        }
         Ok(Self {
-            dp,
-            ep,
+            tolerance: Tolerance::new(dp, ep)?,
             refinement_rounds: 0,
             curved: true,
         })
@@ -309,15 +299,9 @@ impl TwoPlanes {
     /// Fits planes, then patches, and labels all points.
     fn fit(&self, local: &LocalPoints<'_>) -> Result<Sheets, Rejection> {
         let count = local.fitted;
-        if count < 2 * PATCH_POINTS {
-            return Err(Rejection::TooFewPoints {
-                found: count,
-                needed: 2 * PATCH_POINTS,
-            });
-        }
-        let all: Vec<Vector3<f64>> = (0..local.len())
-            .map(|k| Vector3::from_column_slice(local.point(k)))
-            .collect();
+        at_least(2 * PATCH_POINTS, local)?;
+        let Tolerance { ep, .. } = self.tolerance;
+        let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
         let mut planes = PlanePair::direct(points.iter().copied(), local.radius)?;
         if self.refinement_rounds > 0 {
@@ -369,22 +353,22 @@ impl TwoPlanes {
                 (0, false) => 3,
                 _ => 4,
             };
-            *label = if own.abs() < self.ep && other.abs() < self.ep {
+            *label = if own.abs() < ep && other.abs() < ep {
                 0
             } else {
                 cell
             };
             if k < count {
                 sum += own * own;
-                astray += usize::from(own.abs() > self.ep);
+                astray += usize::from(own.abs() > ep);
                 held[*label as usize] += 1;
             }
         }
-        let residual = (sum / count as f64).sqrt();
-        if residual > self.dp || self.curved && astray as f64 > MOST_ASTRAY * count as f64 {
+        let residual = self.tolerance.residual(sum, count)?;
+        if self.curved && astray as f64 > MOST_ASTRAY * count as f64 {
             return Err(Rejection::PoorFit {
                 residual,
-                limit: self.dp,
+                limit: ep,
             });
         }
         let least = (LEAST_CELL_SHARE * (count - held[0]) as f64).max(3.0);
@@ -413,7 +397,7 @@ impl TwoPlanes {
             }
         }
         Ok(Sheets {
-            ep: self.ep,
+            ep,
             radius: local.radius,
             all,
             fitted: count,
