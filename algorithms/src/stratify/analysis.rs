@@ -581,6 +581,8 @@ impl<S: Scalar> Analyzer<'_, S> {
             }
             let plain = match OneSheet.decompose(&self.local(&view, &OneSheet, scratch)) {
                 Ok(fit) => fit.residual,
+                // A curve needs fewer points than a sheet, and is not compared with one.
+                Err(_) if dimension == 1 => f64::INFINITY,
                 Err(_) => break,
             };
             let rows: Vec<usize> = (view.fitted..scratch.near.len()).collect();
