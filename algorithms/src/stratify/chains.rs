@@ -108,32 +108,30 @@ impl Curves {
                     }
                 })
         });
-        let labels: Vec<Option<(usize, u8)>> = if kind == Role::Boundary {
-            rows.iter().map(|&row| label(row)).collect()
-        } else {
-            let known: Vec<(usize, (usize, u8))> = rows
+        let mut labels: Vec<Option<(usize, u8)>> = rows.iter().map(|&row| label(row)).collect();
+        if kind == Role::Curve {
+            // Only 0-strata tell arcs apart. Where the bands of two arcs run together, the nearest point that is
+            // on one arc alone decides.
+            let on_arc: Vec<(usize, (usize, u8))> = rows
                 .iter()
-                .filter_map(|&row| Some((row, label(row)?)))
-                .filter(|&(_, (k, _))| self.corner_references[k].has_points())
-                .collect();
-            // Where the bands of two arcs run together, the nearest point that is on one arc alone decides.
-            let arc = |row: usize, (k, l): (usize, u8)| -> Option<(usize, u8)> {
-                if self.corner_references[k].is_curve(l) {
-                    return Some((k, l));
-                }
-                known
-                    .iter()
-                    .filter(|&&(_, (j, m))| j == k && self.corner_references[j].is_curve(m))
-                    .min_by(|a, b| distance(a.0, row).total_cmp(&distance(b.0, row)))
-                    .map(|&(_, found)| found)
-            };
-            rows.iter()
-                .map(|&row| {
-                    let found = known.iter().find(|x| x.0 == row)?.1;
-                    arc(row, found)
+                .zip(&labels)
+                .filter_map(|(&row, &found)| Some((row, found?)))
+                .filter(|&(_, (k, l))| {
+                    let corner = &self.corner_references[k];
+                    corner.has_points() && corner.is_curve(l)
                 })
-                .collect()
-        };
+                .collect();
+            for (found, &row) in labels.iter_mut().zip(&rows) {
+                *found = found.and_then(|(k, l)| {
+                    let own = on_arc.iter().filter(|x| x.1.0 == k);
+                    if self.corner_references[k].is_curve(l) {
+                        return self.corner_references[k].has_points().then_some((k, l));
+                    }
+                    own.min_by(|a, b| distance(a.0, row).total_cmp(&distance(b.0, row)))
+                        .map(|x| x.1)
+                });
+            }
+        }
         let mut graph: Vec<Vec<(usize, f64)>> = vec![Vec::new(); rows.len()];
         let mut near = Vec::new();
         let mut at = vec![usize::MAX; analysis.roles.len()];
@@ -188,15 +186,15 @@ impl Curves {
                 .iter()
                 .map(|members| members.iter().all(|&k| distance(row, rows[k]) < dl))
                 .collect();
+            let at_points = self
+                .corner_references
+                .iter()
+                .any(|r| r.row == row && r.has_points());
             for (k, &other) in rows.iter().enumerate() {
                 let d = distance(row, other);
                 if d > JOIN * dl || stub[part[k]] {
                     continue;
                 }
-                let at_points = self
-                    .corner_references
-                    .iter()
-                    .any(|r| r.row == row && r.has_points());
                 let branch = match (kind, labels[k]) {
                     (Role::Boundary, Some((_, l))) => l,
                     (Role::Curve, Some((at, l))) if self.corner_references[at].row == row => l,

@@ -306,9 +306,14 @@ pub fn stratify<S: Scalar>(
                 radius *= WIDENING;
                 members = around.near(landmark, radius);
             }
+            let origin = places.point(rows[job.landmark]);
             around
                 .is_plain(landmark, radius, &members, scratch)
-                .then_some(members)
+                .then(|| {
+                    nearest_first(members, |k| {
+                        squared_distance(origin, places.point(rows[k as usize]))
+                    })
+                })
         },
     );
     let mut pending: Vec<usize> = (0..jobs.len()).filter(|&j| found[j].is_none()).collect();
@@ -376,15 +381,10 @@ pub fn stratify<S: Scalar>(
                 hits.flood.run(&graph, from, inside);
                 let found =
                     hits.members(&contacts, &landmark_at, job.landmark, |k| inside(rows[k]));
-                if charts.is_none() {
-                    return found;
-                }
-                let mut ranked: Vec<(f64, u32)> = (found.into_iter())
-                    .map(|k| (ball.distance(rows[k as usize]), k))
-                    .collect();
-                ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                ranked.dedup();
-                ranked.into_iter().map(|x| x.1).collect()
+                nearest_first(found, |k| match charts {
+                    None => squared_distance(origin, places.point(rows[k as usize])),
+                    Some(_) => ball.distance(rows[k as usize]),
+                })
             },
         );
         let mut thin = Vec::new();
@@ -403,22 +403,11 @@ pub fn stratify<S: Scalar>(
         .iter()
         .zip(found)
         .map(|(job, members)| {
-            let origin = places.point(rows[job.landmark]);
-            let far = |k: u32| squared_distance(origin, places.point(rows[k as usize]));
-            let mut ranked: Vec<(f64, u32)> = members
-                .unwrap_or_default()
-                .into_iter()
-                .map(|k| (far(k), k))
-                .collect();
-            if charts.is_none() {
-                ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                ranked.dedup();
-            }
             let center = job.landmark as u32;
             CellNeighborhood {
                 center,
                 members: std::iter::once(center)
-                    .chain(ranked.into_iter().map(|x| x.1))
+                    .chain(members.unwrap_or_default())
                     .collect(),
             }
         })
@@ -467,6 +456,14 @@ pub fn stratify<S: Scalar>(
         rows,
         counts,
     })
+}
+
+/// Landmarks in order of their distance, ties by index, each once.
+fn nearest_first(members: Vec<u32>, far: impl Fn(u32) -> f64) -> Vec<u32> {
+    let mut ranked: Vec<(f64, u32)> = members.into_iter().map(|k| (far(k), k)).collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    ranked.dedup();
+    ranked.into_iter().map(|x| x.1).collect()
 }
 
 /// Regular rows outside the diametral ball of every chain edge: a landmark inside it would
