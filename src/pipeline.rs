@@ -180,7 +180,8 @@ impl Parameters {
                 "more than dl: a chart of one landmark holds no triangle",
             );
         }
-        if !self.surface && self.ep >= self.eps {
+        let band = !self.surface || self.models.contains(&ModelName::Boundary);
+        if band && self.ep >= self.eps {
             return refuse(
                 "ep",
                 self.ep,

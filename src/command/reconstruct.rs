@@ -359,6 +359,7 @@ pub fn write_reconstruction(
         "seed": parameters.seed,
         "surface": parameters.surface,
         "boundary_points": parameters.boundary.len(),
+        "models": parameters.models,
         "method": parameters.method.to_string(),
         "estimator": outcome.report.estimator,
     });
