@@ -827,10 +827,10 @@ fn add_where_astray<S: Scalar>(
                 S::of(sum / corners.len() as f64)
             }));
             let mut reach = STRAY * dl;
-            oracle.within_of(&middle, S::of(reach), &mut near);
-            if !near.is_empty() {
+            if oracle.is_near(&middle, S::of(reach)) {
                 continue;
             }
+            near.clear();
             while near.is_empty() && reach < 8.0 * dl {
                 reach *= 1.5;
                 oracle.within_of(&middle, S::of(reach), &mut near);

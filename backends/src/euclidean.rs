@@ -109,6 +109,36 @@ impl<S: Scalar> EuclideanOracle<S> {
         &self.cloud
     }
 
+    /// Whether a point is closer to `place` than `radius`; `false` for a place with another number of
+    /// coordinates. Takes O(log n) where one is.
+    ///
+    /// ```
+    /// use crosscap_backends::euclidean::EuclideanOracle;
+    /// use crosscap_core::PointCloud;
+    /// let line = PointCloud::new(1, vec![0.0, 3.0]).unwrap();
+    /// let oracle = EuclideanOracle::new(line).unwrap();
+    /// assert!(oracle.is_near(&[2.5], 0.6));
+    /// assert!(!oracle.is_near(&[2.5], 0.5)); // strict
+    /// ```
+    pub fn is_near(&self, place: &[S], radius: S) -> bool {
+        if place.len() != self.cloud.dimension() {
+            return false;
+        }
+        let mut lead = [0.0; MOST_AXES];
+        let mut near = false;
+        if self.frame.place(place, &mut lead) < 1e100 {
+            self.tree.nearest(&lead, 1, &mut |index| {
+                near |= self.distance_to(place, index as usize) < radius;
+            });
+        }
+        // The nearest in the tree is a point like any other, but need not be the nearest of all.
+        near || {
+            let mut found = Vec::new();
+            self.within_row(place, radius, &mut found);
+            !found.is_empty()
+        }
+    }
+
     fn distance_to(&self, row: &[S], index: usize) -> S {
         S::of(squared_distance(row, self.cloud.point(index)).sqrt())
     }
@@ -515,6 +545,10 @@ mod tests {
                 assert_eq!(found, expected, "center {center}, radius {radius}");
                 assert!(oracle.within_of(cloud.point(center), radius, &mut found));
                 assert_eq!(found, expected);
+                assert_eq!(
+                    oracle.is_near(cloud.point(center), radius),
+                    !expected.is_empty()
+                );
                 oracle.indices_within(center, radius, &mut indices);
                 indices.sort_unstable();
                 let mut set: Vec<u32> = expected.iter().map(|n| n.index as u32).collect();

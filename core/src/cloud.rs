@@ -118,14 +118,27 @@ impl<S: Scalar> PointCloud<S> {
 }
 
 /// Squared Euclidean distance of two coordinate rows of equal length, summed in `f64`.
+///
+/// Summed in four lanes, coordinate k in lane k mod 4: one sum after the other would wait for every addition.
+#[inline]
 pub fn squared_distance<S: Scalar>(a: &[S], b: &[S]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(x, y)| {
-            let d = x.as_f64() - y.as_f64();
-            d * d
-        })
-        .sum()
+    let square = |x: &S, y: &S| {
+        let d = x.as_f64() - y.as_f64();
+        d * d
+    };
+    let (a, last_a) = a.as_chunks::<4>();
+    let (b, last_b) = b.as_chunks::<4>();
+    let rest: f64 = last_a.iter().zip(last_b).map(|(x, y)| square(x, y)).sum();
+    if a.is_empty() {
+        return rest;
+    }
+    let mut lanes = [0.0; 4];
+    for (x, y) in a.iter().zip(b) {
+        for (k, lane) in lanes.iter_mut().enumerate() {
+            *lane += square(&x[k], &y[k]);
+        }
+    }
+    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + rest
 }
 
 #[cfg(test)]
@@ -142,6 +155,16 @@ mod tests {
     fn refuses_ragged_rows() {
         assert!(PointCloud::new(3, vec![0.0_f64; 4]).is_err());
         assert!(PointCloud::<f64>::new(0, vec![]).is_err());
+    }
+
+    #[test]
+    fn squared_distances_count_every_coordinate() {
+        for n in 0..12_u8 {
+            let a: Vec<f64> = (0..n).map(f64::from).collect();
+            let b: Vec<f64> = (0..n).map(|k| 3.0 * f64::from(k) + 1.0).collect();
+            let expected: u32 = (0..u32::from(n)).map(|k| (2 * k + 1) * (2 * k + 1)).sum();
+            assert_eq!(squared_distance(&a, &b), f64::from(expected));
+        }
     }
 
     #[test]

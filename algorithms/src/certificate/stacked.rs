@@ -109,28 +109,33 @@ impl<'a> Planes<'a> {
                 .sum();
             off < offset * offset
         });
-        near && overlap(lower, upper) > depth
+        near && overlap(lower, upper, depth) > depth
     }
 }
 
 /// How deep two triangles of the plane overlap: the shortest move that separates them, over the
-/// normals of all six sides. Negative when they are apart.
-fn overlap(a: [[f64; 2]; 3], b: [[f64; 2]; 3]) -> f64 {
+/// normals of all six sides. Negative when they are apart; no more than `enough` where that is all
+/// that the first few sides tell.
+fn overlap(a: [[f64; 2]; 3], b: [[f64; 2]; 3], enough: f64) -> f64 {
     let mut least = f64::INFINITY;
     for triangle in [a, b] {
         for k in 0..3 {
             let (from, to) = (triangle[k], triangle[(k + 1) % 3]);
             let normal = [from[1] - to[1], to[0] - from[0]];
-            let length = normal[0].hypot(normal[1]).max(f64::MIN_POSITIVE);
+            let square = normal[0] * normal[0] + normal[1] * normal[1];
+            let length = square.sqrt().max(f64::MIN_POSITIVE);
             let span = |t: [[f64; 2]; 3]| {
                 t.iter()
-                    .map(|x| (x[0] * normal[0] + x[1] * normal[1]) / length)
+                    .map(|x| x[0] * normal[0] + x[1] * normal[1])
                     .fold((f64::INFINITY, f64::NEG_INFINITY), |s, x| {
                         (s.0.min(x), s.1.max(x))
                     })
             };
             let (p, q) = (span(a), span(b));
-            least = least.min(p.1.min(q.1) - p.0.max(q.0));
+            least = least.min((p.1.min(q.1) - p.0.max(q.0)) / length);
+            if least <= enough {
+                return least;
+            }
         }
     }
     least
@@ -144,8 +149,10 @@ mod tests {
     fn depth_of_overlap() {
         let t = [[0., 0.], [1., 0.], [0., 1.]];
         let moved = |x: f64| t.map(|p: [f64; 2]| [p[0] + x, p[1]]);
-        assert!((overlap(t, moved(0.9)) - 0.1 / 2.0_f64.sqrt()).abs() < 1e-12);
-        assert!(overlap(t, moved(1.5)) < 0.0);
-        assert!(overlap(t, t) > 0.7);
+        let depth = 0.1 / 2.0_f64.sqrt();
+        assert!((overlap(t, moved(0.9), 0.0) - depth).abs() < 1e-12);
+        assert!(overlap(t, moved(0.9), 0.09) <= 0.09);
+        assert!(overlap(t, moved(1.5), 0.0) < 0.0);
+        assert!(overlap(t, t, 0.0) > 0.7);
     }
 }

@@ -104,7 +104,7 @@ fn all(gram: DMatrix<f64>, wanted: usize) -> Pairs {
 /// not converge, or where eigenvalues that large are negative, as they are far from Euclidean distances.
 fn leading(gram: &DMatrix<f64>, wanted: usize) -> Option<Pairs> {
     let count = gram.nrows();
-    let block = wanted + SPARE;
+    let mut block = wanted + SPARE;
     if count < SMALLEST_SEARCH.max(2 * block) {
         return None;
     }
@@ -114,8 +114,15 @@ fn leading(gram: &DMatrix<f64>, wanted: usize) -> Option<Pairs> {
     });
     let mut image = DMatrix::zeros(count, block);
     for round in 1..=ROUNDS {
-        if !orthonormalize(&mut basis) {
-            return None;
+        // Distances in R^3 have no more than three directions to offer: then these are all there is.
+        let independent = orthonormalize(&mut basis);
+        if independent < block {
+            block = independent;
+            if block < wanted {
+                return None;
+            }
+            basis.resize_horizontally_mut(block, 0.0);
+            image.resize_horizontally_mut(block, 0.0);
         }
         gram.mul_to(&basis, &mut image);
         // Charts of a surface have converged after a few rounds, and asking is not cheap.
@@ -146,8 +153,9 @@ fn leading(gram: &DMatrix<f64>, wanted: usize) -> Option<Pairs> {
     None
 }
 
-/// Gram-Schmidt, twice; `false` where the columns are dependent within rounding.
-fn orthonormalize(basis: &mut DMatrix<f64>) -> bool {
+/// Gram-Schmidt, twice; returns how many columns there are before the first that depends on those
+/// before it within rounding.
+fn orthonormalize(basis: &mut DMatrix<f64>) -> usize {
     let (rows, columns) = basis.shape();
     let data = basis.as_mut_slice();
     for k in 0..columns {
@@ -163,12 +171,12 @@ fn orthonormalize(basis: &mut DMatrix<f64>) -> bool {
         let square: f64 = own.iter().map(|x| x * x).sum();
         let left = square > 1e-24 * before;
         if !left {
-            return false;
+            return k;
         }
         let inverse = 1.0 / square.sqrt();
         own.iter_mut().for_each(|x| *x *= inverse);
     }
-    true
+    columns
 }
 
 #[cfg(test)]

@@ -27,6 +27,8 @@ const NOISE: f64 = 1e-8;
 const WIDEST: f64 = 0.3;
 /// Up to this many coordinates the points of the fringe are looked at one by one.
 const POINTWISE: usize = 3;
+/// Points that are added up side by side: a leaf, where there are that few coordinates.
+const LANES: usize = 8;
 /// Rounds of subspace iteration for the plane, and those from the plane of the node before.
 const COLD_ROUNDS: usize = 6;
 const WARM_ROUNDS: usize = 1;
@@ -224,41 +226,41 @@ impl<'a, S: Scalar> Settler<'a, S> {
         // Relative rounding of a distance is far below this.
         let near = (limits[0].max(0.0) * (1.0 - 1e-9)).powi(2);
         let far = (limits[1] * (1.0 + 1e-9)).powi(2);
-        // Count, coordinates and products, as in ten lanes.
-        let mut sums = [[0.0; 10]; 2];
+        // Count, coordinates and products, a leaf at a time: eight points are eight lanes.
+        let mut sums = [[[0.0; LANES]; 10]; 2];
         let mut middle = [0.0; POINTWISE];
         middle[..n].copy_from_slice(center);
         for &at in &self.fringe {
             let other = &tree.nodes[at as usize];
             let places = &tree.places[other.start as usize * n..other.end as usize * n];
-            for place in places.chunks_exact(n) {
-                let mut o = [0.0; POINTWISE];
-                for ((o, y), c) in o.iter_mut().zip(place).zip(&middle) {
-                    *o = y - c;
+            for places in places.chunks(LANES * n) {
+                let mut offsets = [[0.0; LANES]; POINTWISE];
+                // Lanes without a point are nowhere.
+                let mut squares = [f64::INFINITY; LANES];
+                for (lane, place) in places.chunks_exact(n).enumerate() {
+                    squares[lane] = 0.0;
+                    for ((o, y), c) in offsets.iter_mut().zip(place).zip(&middle) {
+                        o[lane] = y - c;
+                    }
                 }
-                let [x, y, z] = o;
-                let square = x * x + y * y + z * z;
-                if square >= far {
-                    continue;
+                for o in &offsets {
+                    for (s, x) in squares.iter_mut().zip(o) {
+                        *s += x * x;
+                    }
                 }
-                let row = [1.0, x, y, z, x * x, x * y, x * z, y * y, y * z, z * z];
-                for (s, r) in sums[usize::from(square >= near)].iter_mut().zip(&row) {
-                    *s += r;
+                for (sums, limit) in sums.iter_mut().zip([near, far]) {
+                    let weights = squares.map(|s| if s < limit { 1.0 } else { 0.0 });
+                    add_weighted(sums, &weights, &offsets);
                 }
             }
         }
-        let [within, between] = sums;
+        let total = |lanes: &[f64; LANES]| lanes.iter().sum::<f64>();
+        let [within, reached] = sums.map(|set| set.each_ref().map(total));
         let slots: &[usize] = match n {
             2 => &[4, 5, 7],
             _ => &[4, 5, 6, 7, 8, 9],
         };
-        for (moments, extra) in [
-            (&mut self.inner, within),
-            (
-                &mut self.outer,
-                std::array::from_fn(|k| within[k] + between[k]),
-            ),
-        ] {
+        for (moments, extra) in [(&mut self.inner, within), (&mut self.outer, reached)] {
             moments.count += extra[0];
             for (s, x) in moments.sum.iter_mut().zip(&extra[1..4]) {
                 *s += x;
@@ -366,6 +368,35 @@ impl<'a, S: Scalar> Settler<'a, S> {
             }
         }
         count
+    }
+}
+
+/// Adds weights, weighted coordinates and weighted products of coordinates, lane by lane.
+#[inline(always)]
+fn add_weighted(
+    sums: &mut [[f64; LANES]; 10],
+    weights: &[f64; LANES],
+    offsets: &[[f64; LANES]; POINTWISE],
+) {
+    let [x, y, z] = offsets;
+    for lane in 0..LANES {
+        let w = weights[lane];
+        let (wx, wy, wz) = (w * x[lane], w * y[lane], w * z[lane]);
+        let row = [
+            w,
+            wx,
+            wy,
+            wz,
+            wx * x[lane],
+            wx * y[lane],
+            wx * z[lane],
+            wy * y[lane],
+            wy * z[lane],
+            wz * z[lane],
+        ];
+        for (sum, term) in sums.iter_mut().zip(row) {
+            sum[lane] += term;
+        }
     }
 }
 

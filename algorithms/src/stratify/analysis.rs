@@ -231,7 +231,6 @@ const WITNESS_REACH: f64 = 0.4;
 const APEX_REACH: f64 = 0.5;
 
 /// What one point turned out to be.
-/// What one point turned out to be.
 #[derive(Debug)]
 pub(super) struct Verdict {
     kind: Kind,

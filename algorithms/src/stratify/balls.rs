@@ -4,8 +4,10 @@ use crate::execute::{self, Execute};
 use crosscap_core::squared_distance;
 
 /// Most places of a leaf: more than the neighbors that are asked for, so that a leaf alone bounds
-/// how far they are.
+/// how far they are. Its distances are computed lane by lane.
 const LEAF: usize = 32;
+/// Lanes that are summed together.
+const LANES: usize = 8;
 /// Places that the direction of a split is read from.
 const SHOWN: usize = 48;
 /// Relative bound on the rounding of a distance.
@@ -18,6 +20,8 @@ struct Node {
     end: u32,
     /// The second child; the first one is the next node. 0 for a leaf.
     right: u32,
+    /// Which leaf it is, or the first one below it.
+    leaf: u32,
     /// Largest distance of a place from the center.
     radius: f64,
 }
@@ -29,41 +33,38 @@ pub(super) struct BallTree {
     width: usize,
     /// The caller's index at every position.
     order: Vec<u32>,
-    /// Places in leaf order, `width` numbers each.
-    places: Vec<f64>,
+    /// Places leaf by leaf, coordinate by coordinate, one a lane; infinity where no place is.
+    lanes: Vec<[f64; LEAF]>,
     nodes: Vec<Node>,
     centers: Vec<f64>,
 }
 
-/// The nearest places of one, by distance, ties by index, itself left out.
-pub(super) struct Nearest {
-    /// The caller's index of the place.
-    pub(super) index: u32,
-    /// Those near it, with their squared distances.
-    pub(super) near: Vec<(f64, u32)>,
+/// Buffers of one thread.
+#[derive(Default)]
+struct Search {
+    /// Leaves with their gap.
+    around: Vec<(f64, u32)>,
+    place: Vec<f64>,
+    near: Vec<(f64, u32)>,
 }
 
 impl BallTree {
     /// A tree over `places`, `width` numbers each; they are named by their position there.
     pub(super) fn new(width: usize, places: &[f64]) -> Self {
         let count = places.len() / width.max(1);
-        let mut order: Vec<u32> = (0..count as u32).collect();
         let mut tree = Self {
             width,
-            order: Vec::new(),
-            places: Vec::with_capacity(places.len()),
+            order: (0..count as u32).collect(),
+            lanes: Vec::new(),
             nodes: Vec::new(),
             centers: Vec::new(),
         };
         if count > 0 {
+            let mut order = std::mem::take(&mut tree.order);
             tree.split(places, &mut order, 0, &mut Vec::new());
+            tree.order = order;
         }
-        for &i in &order {
-            tree.places
-                .extend_from_slice(&places[i as usize * width..(i as usize + 1) * width]);
-        }
-        tree.order = order;
-        tree.measure();
+        tree.measure(places);
         tree
     }
 
@@ -75,16 +76,24 @@ impl BallTree {
         keyed: &mut Vec<(f64, u32)>,
     ) {
         let at = self.nodes.len();
+        let width = self.width;
         self.nodes.push(Node {
             start: start as u32,
             end: (start + rows.len()) as u32,
             right: 0,
+            leaf: (self.lanes.len() / width) as u32,
             radius: 0.0,
         });
         if rows.len() <= LEAF {
+            for k in 0..width {
+                let mut lanes = [f64::INFINITY; LEAF];
+                for (lane, &i) in lanes.iter_mut().zip(&*rows) {
+                    *lane = places[i as usize * width + k];
+                }
+                self.lanes.push(lanes);
+            }
             return;
         }
-        let width = self.width;
         let mut low = vec![f64::INFINITY; width];
         let mut high = vec![f64::NEG_INFINITY; width];
         for &i in rows.iter().step_by((rows.len() / SHOWN).max(1)) {
@@ -110,7 +119,7 @@ impl BallTree {
     }
 
     /// Centers and radii.
-    fn measure(&mut self) {
+    fn measure(&mut self, places: &[f64]) {
         let width = self.width;
         self.centers = vec![0.0; self.nodes.len() * width];
         for (node, center) in self
@@ -118,49 +127,84 @@ impl BallTree {
             .iter_mut()
             .zip(self.centers.chunks_exact_mut(width.max(1)))
         {
-            let places = &self.places[node.start as usize * width..node.end as usize * width];
-            for place in places.chunks_exact(width) {
-                for (c, x) in center.iter_mut().zip(place) {
+            let rows = &self.order[node.start as usize..node.end as usize];
+            let place = |&i: &u32| &places[i as usize * width..(i as usize + 1) * width];
+            for row in rows {
+                for (c, x) in center.iter_mut().zip(place(row)) {
                     *c += x;
                 }
             }
             let share = 1.0 / f64::from(node.end - node.start);
             center.iter_mut().for_each(|c| *c *= share);
-            node.radius = places
-                .chunks_exact(width)
-                .map(|place| squared_distance(place, center))
+            node.radius = rows
+                .iter()
+                .map(|row| squared_distance(place(row), center))
                 .fold(0.0, f64::max)
                 .sqrt()
                 * (1.0 + ROUNDING);
         }
     }
 
+    /// The caller's indices in the order of the tree.
+    pub(super) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
     fn center(&self, node: usize) -> &[f64] {
         &self.centers[node * self.width..(node + 1) * self.width]
     }
 
-    fn place(&self, position: usize) -> &[f64] {
-        &self.places[position * self.width..(position + 1) * self.width]
+    /// Squared distances of the places of a leaf from `place`.
+    #[inline]
+    fn squares(&self, leaf: &Node, place: &[f64]) -> [f64; LEAF] {
+        let first = leaf.leaf as usize * self.width;
+        let rows = &self.lanes[first..first + self.width];
+        let mut squares = [0.0; LEAF];
+        for (k, sums) in squares.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
+            for (row, x) in rows.iter().zip(place) {
+                let row = &row.as_chunks::<LANES>().0[k];
+                for (sum, y) in sums.iter_mut().zip(row) {
+                    *sum += (y - x) * (y - x);
+                }
+            }
+        }
+        squares
     }
 
     /// Visits every place closer to `place` than `radius`, with its squared distance.
     pub(super) fn within(&self, place: &[f64], radius: f64, mut visit: impl FnMut(u32, f64)) {
-        let limit = radius * radius;
-        self.leaves(place, radius, &mut |leaf, _| {
-            let node = &self.nodes[leaf];
-            for position in node.start as usize..node.end as usize {
-                let square = squared_distance(place, self.place(position));
-                if square < limit {
-                    visit(self.order[position], square);
-                }
-            }
+        self.any_within(place, radius, |index, square| {
+            visit(index, square);
+            false
         });
     }
 
-    /// Visits the leaves whose balls come as close to `place` as `reach`, with that gap.
-    fn leaves(&self, place: &[f64], reach: f64, visit: &mut impl FnMut(usize, f64)) {
+    /// Whether `test` holds for a place closer to `place` than `radius`; it gets the squared distance, and
+    /// is not asked any further once it held.
+    pub(super) fn any_within(
+        &self,
+        place: &[f64],
+        radius: f64,
+        mut test: impl FnMut(u32, f64) -> bool,
+    ) -> bool {
+        let limit = radius * radius;
+        self.leaves(place, radius, &mut |at, _| {
+            let node = &self.nodes[at];
+            let order = &self.order[node.start as usize..node.end as usize];
+            (order.iter().zip(&self.squares(node, place)))
+                .any(|(&index, &square)| square < limit && test(index, square))
+        })
+    }
+
+    /// Visits the leaves whose balls come as close to `place` as `reach`, with that gap, until `visit` says so.
+    fn leaves(
+        &self,
+        place: &[f64],
+        reach: f64,
+        visit: &mut impl FnMut(usize, f64) -> bool,
+    ) -> bool {
         if self.nodes.is_empty() {
-            return;
+            return false;
         }
         let mut stack = [0u32; 96];
         let mut height = 1;
@@ -174,7 +218,9 @@ impl BallTree {
                 continue;
             }
             if node.right == 0 {
-                visit(at, gap);
+                if visit(at, gap) {
+                    return true;
+                }
             } else {
                 // Halves, so the tree is not higher than the bits of an index.
                 stack[height] = node.right;
@@ -182,15 +228,18 @@ impl BallTree {
                 height += 2;
             }
         }
+        false
     }
 
-    /// The `count` nearest of every place that `wanted` names, in the order of the tree.
-    pub(super) fn nearest_of_each(
+    /// What `each` makes of every place that `wanted` names and its `count` nearest, in the order of the
+    /// tree: with squared distances, ties by index, the farthest last, the place itself left out.
+    pub(super) fn nearest_of_each<T: Send + Sync>(
         &self,
         count: usize,
         wanted: impl Fn(u32) -> bool + Sync,
         execute: &dyn Execute,
-    ) -> Vec<Nearest> {
+        each: impl Fn(u32, &[(f64, u32)]) -> T + Sync,
+    ) -> Vec<T> {
         let leaves: Vec<usize> = (0..self.nodes.len())
             .filter(|&at| self.nodes[at].right == 0)
             .collect();
@@ -198,70 +247,104 @@ impl BallTree {
             execute,
             LEAVES_AT_ONCE,
             leaves.len(),
-            Vec::new,
-            |around, k| self.nearest_of_leaf(leaves[k], count, &wanted, around),
+            Search::default,
+            |search, k| self.nearest_of_leaf(leaves[k], count, &wanted, search, &each),
         )
         .into_iter()
         .flatten()
         .collect()
     }
 
-    fn nearest_of_leaf(
+    fn nearest_of_leaf<T>(
         &self,
         leaf: usize,
         count: usize,
         wanted: &impl Fn(u32) -> bool,
-        around: &mut Vec<(f64, u32)>,
-    ) -> Vec<Nearest> {
-        let node = &self.nodes[leaf];
-        let own = node.start as usize..node.end as usize;
-        if !own.clone().any(|p| wanted(self.order[p])) {
+        search: &mut Search,
+        each: &impl Fn(u32, &[(f64, u32)]) -> T,
+    ) -> Vec<T> {
+        let own = &self.nodes[leaf];
+        let positions = own.start as usize..own.end as usize;
+        if !self.order[positions.clone()].iter().any(|&i| wanted(i)) {
             return Vec::new();
         }
         // Its own leaf bounds how far the neighbors of a place are.
-        let bound = if own.len() > count {
-            2.0 * node.radius
+        let bound = if positions.len() > count {
+            2.0 * own.radius
         } else {
             f64::INFINITY
         };
+        let Search {
+            around,
+            place,
+            near,
+        } = search;
+        let center = self.center(leaf);
         around.clear();
-        self.leaves(self.center(leaf), node.radius + bound, &mut |at, gap| {
-            around.push((gap, at as u32));
+        self.leaves(center, own.radius + bound, &mut |at, gap| {
+            if at != leaf {
+                around.push((gap, at as u32));
+            }
+            false
         });
-        around.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let mut out = Vec::with_capacity(own.len());
-        for position in own.filter(|&p| wanted(self.order[p])) {
-            let place = self.place(position);
-            let mut near: Vec<(f64, u32)> = Vec::with_capacity(count + 1);
-            for &(_, at) in around.iter() {
-                let node = &self.nodes[at as usize];
-                if near.len() == count {
-                    let gap = squared_distance(place, self.center(at as usize)).sqrt()
-                        * (1.0 - ROUNDING)
-                        - node.radius;
-                    let farthest = near[count - 1].0;
-                    if gap > 0.0 && gap * gap > farthest {
-                        continue;
-                    }
+        around.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let lanes = &self.lanes[own.leaf as usize * self.width..][..self.width];
+        let mut out = Vec::with_capacity(positions.len());
+        for (lane, &index) in self.order[positions].iter().enumerate() {
+            if !wanted(index) {
+                continue;
+            }
+            place.clear();
+            place.extend(lanes.iter().map(|row| row[lane]));
+            near.clear();
+            self.add_closer(own, place, f64::INFINITY, near);
+            near.swap_remove(lane);
+            let mut farthest = keep_nearest(near, count);
+            let mut reach = farthest.sqrt() * (1.0 + ROUNDING);
+            let beside = squared_distance(place, center).sqrt() * (1.0 + ROUNDING);
+            for &(gap, at) in around.iter() {
+                if gap - beside > reach {
+                    break;
                 }
-                for other in node.start as usize..node.end as usize {
-                    let square = squared_distance(place, self.place(other));
-                    if near.len() == count && square > near[count - 1].0 || other == position {
-                        continue;
-                    }
-                    let entry = (square, self.order[other]);
-                    let slot = near.partition_point(|x| (x.0, x.1) < entry);
-                    near.insert(slot, entry);
-                    near.truncate(count);
+                let node = &self.nodes[at as usize];
+                let outer = reach + node.radius;
+                if squared_distance(place, self.center(at as usize)) > outer * outer {
+                    continue;
+                }
+                self.add_closer(node, place, farthest, near);
+                if near.len() >= 2 * count {
+                    farthest = keep_nearest(near, count);
+                    reach = farthest.sqrt() * (1.0 + ROUNDING);
                 }
             }
-            out.push(Nearest {
-                index: self.order[position],
-                near,
-            });
+            keep_nearest(near, count);
+            out.push(each(index, near));
         }
         out
     }
+
+    /// Adds the places of a leaf that are no farther from `place` than the root of `limit`.
+    fn add_closer(&self, leaf: &Node, place: &[f64], limit: f64, near: &mut Vec<(f64, u32)>) {
+        let order = &self.order[leaf.start as usize..leaf.end as usize];
+        for (&other, &square) in order.iter().zip(&self.squares(leaf, place)) {
+            if square <= limit {
+                near.push((square, other));
+            }
+        }
+    }
+}
+
+/// Keeps the `count` nearest, ties by index, the farthest of them last; returns how far it is, infinity
+/// where there are fewer.
+fn keep_nearest(near: &mut Vec<(f64, u32)>, count: usize) -> f64 {
+    if near.len() < count {
+        return f64::INFINITY;
+    }
+    let (_, last, _) =
+        near.select_nth_unstable_by(count - 1, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let farthest = last.0;
+    near.truncate(count);
+    farthest
 }
 
 #[cfg(test)]
@@ -285,15 +368,20 @@ mod tests {
             let square = |a: usize, b: usize| {
                 squared_distance(&places[a * width..(a + 1) * width], &places[b * width..(b + 1) * width])
             };
-            let found = tree.nearest_of_each(count, |i| i % 3 != 1, &Serial);
-            prop_assert_eq!(found.len(), (0..n).filter(|i| i % 3 != 1).count());
-            for one in found {
-                let i = one.index as usize;
+            let found = tree.nearest_of_each(count, |i| i % 3 != 1, &Serial, |i, near| (i, near.to_vec()));
+            let in_order: Vec<u32> = found.iter().map(|x| x.0).collect();
+            let expected: Vec<u32> = tree.order().iter().copied().filter(|i| i % 3 != 1).collect();
+            prop_assert_eq!(in_order, expected);
+            for (i, mut near) in found {
+                let farthest = near.last().copied();
+                near.sort_by(|a, b| a.partial_cmp(b).unwrap());
+                prop_assert_eq!(farthest, near.last().copied());
+                let i = i as usize;
                 let mut all: Vec<(f64, u32)> =
                     (0..n).filter(|&j| j != i).map(|j| (square(i, j), j as u32)).collect();
                 all.sort_by(|a, b| a.partial_cmp(b).unwrap());
                 all.truncate(count);
-                prop_assert_eq!(one.near, all);
+                prop_assert_eq!(near, all);
             }
             for i in (0..n).step_by(7) {
                 let mut inside = Vec::new();
@@ -301,6 +389,9 @@ mod tests {
                 inside.sort_unstable();
                 let expected: Vec<usize> = (0..n).filter(|&j| square(i, j) < radius * radius).collect();
                 prop_assert_eq!(inside, expected);
+                let first = (0..n).find(|&j| j % 5 == 2 && square(i, j) < radius * radius);
+                let own = &places[i * width..(i + 1) * width];
+                prop_assert_eq!(tree.any_within(own, radius, |j, _| j % 5 == 2), first.is_some());
             }
         }
     }

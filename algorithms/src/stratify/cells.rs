@@ -107,59 +107,129 @@ impl Region {
     }
 
     /// The points within a radius of some rows, `(row, radius)` for each.
+    ///
+    /// O(log c) for each point of the cloud and c rows.
     pub(super) fn about<S: Scalar>(
         analyzer: &Analyzer<'_, S>,
         analysis: &Analysis,
         centers: &[(usize, f64)],
         margin: f64,
     ) -> Self {
-        let found = execute::map_blocks(
-            analyzer.execute,
-            CENTERS_AT_ONCE,
-            centers.len(),
-            Vec::new,
-            |near, c| {
-                let (row, radius) = centers[c];
-                // The oracle knows the points where they were before they were moved.
-                let reach = radius + margin + analysis.offsets[row];
-                analyzer.oracle.indices_within(row, S::of(reach), near);
-                let origin = analysis.places.point(row);
-                near.iter()
-                    .map(|&x| {
-                        let place = analysis.places.point(x as usize);
-                        (x, squared_distance(origin, place) < radius * radius)
-                    })
-                    .collect::<Vec<(u32, bool)>>()
-            },
-        );
-        let mut state = vec![0u8; analysis.roles.len()];
-        for (row, inner) in found.into_iter().flatten() {
-            state[row as usize] |= 1 + u8::from(inner);
+        let width = analyzer.cloud.dimension();
+        let mut places = Vec::with_capacity(centers.len() * width);
+        for &(row, _) in centers {
+            places.extend_from_slice(analysis.places.point(row));
         }
-        let rows: Vec<u32> = (0..state.len() as u32)
-            .filter(|&row| state[row as usize] > 0)
+        let tree = BallTree::new(width, &places);
+        let widest = centers.iter().map(|c| c.1).fold(0.0, f64::max) + margin;
+        let squares: Vec<[f64; 2]> = (centers.iter())
+            .map(|c| [c.1 * c.1, (c.1 + margin) * (c.1 + margin)])
+            .collect();
+        let count = analysis.roles.len();
+        let found = execute::map(analyzer.execute, count, Vec::new, |place, row| {
+            place.clear();
+            place.extend(analyzer.cloud.point(row).iter().map(|x| x.as_f64()));
+            let mut near = false;
+            let inside = tree.any_within(place, widest, |c, square| {
+                let [inner, outer] = squares[c as usize];
+                near |= square < outer;
+                square < inner
+            });
+            (near, inside)
+        });
+        let rows: Vec<u32> = (0..count as u32)
+            .filter(|&row| found[row as usize].0)
             .collect();
         Self {
-            inside: rows.iter().map(|&row| state[row as usize] > 1).collect(),
+            inside: rows.iter().map(|&row| found[row as usize].1).collect(),
             rows,
             margin,
         }
     }
 }
 
-/// Centers whose surroundings are looked up together.
-const CENTERS_AT_ONCE: usize = 16;
-
 /// The graph on the regular points of a region, cut along the curves.
+///
+/// Nodes that are near to each other have near numbers, and their places lie together.
 pub(super) struct CellGraph {
     /// Node of every row, `NONE` outside of the region.
     node_of: Vec<u32>,
     /// Row of every node.
     rows: Vec<u32>,
+    /// Place of every node.
+    width: usize,
+    places: Vec<f64>,
     starts: Vec<usize>,
     targets: Vec<u32>,
     /// Edges cut.
     pub(super) cut: usize,
+}
+
+/// The nodes next to one, `NONE` where there are fewer, and how many edges the labels cut there.
+struct Links {
+    targets: [u32; GRAPH_NEIGHBORS],
+    cut: usize,
+}
+
+/// What labels the points: for every row the reference that is nearest, how far it is, and the label.
+struct Labels<'a> {
+    references: &'a [Reference],
+    nearest: Vec<u32>,
+    closest: Vec<f64>,
+    own: Vec<u8>,
+}
+
+impl<'a> Labels<'a> {
+    fn new(analysis: &Analysis, references: &'a [Reference]) -> Self {
+        let n = analysis.roles.len();
+        let places = &analysis.places;
+        let mut labels = Self {
+            references,
+            nearest: vec![NONE; n],
+            closest: vec![f64::INFINITY; n],
+            own: vec![0; n],
+        };
+        for (k, reference) in references.iter().enumerate() {
+            let reach = (LABEL_REACH * reference.radius).powi(2);
+            let origin = places.point(reference.row);
+            for &(row, label) in &reference.labels {
+                let row = row as usize;
+                let d = squared_distance(origin, places.point(row));
+                if d < reach && d < labels.closest[row] {
+                    labels.closest[row] = d;
+                    labels.nearest[row] = k as u32;
+                    labels.own[row] = label;
+                }
+            }
+        }
+        labels
+    }
+
+    /// Whether `i` and `j` are in different strata, or on the curve itself, by the reference that is
+    /// nearest to either and knows both.
+    fn separated(&self, i: usize, j: usize) -> bool {
+        let (first, second) = if self.closest[j] < self.closest[i] {
+            (j, i)
+        } else {
+            (i, j)
+        };
+        for (from, to) in [(first, second), (second, first)] {
+            let k = self.nearest[from];
+            if k == NONE {
+                continue;
+            }
+            let reference = &self.references[k as usize];
+            let label = if self.nearest[to] == k {
+                Some(self.own[to])
+            } else {
+                reference.label(to)
+            };
+            if let Some(label) = label {
+                return label != self.own[from] || !reference.is_cell(label);
+            }
+        }
+        false
+    }
 }
 
 impl CellGraph {
@@ -172,31 +242,7 @@ impl CellGraph {
         references: &[Reference],
         region: &Region,
     ) -> Self {
-        let n = analysis.roles.len();
-        let places = &analysis.places;
-        let mut nearest = vec![NONE; n];
-        let mut closest = vec![f64::INFINITY; n];
-        for (k, reference) in references.iter().enumerate() {
-            let reach = (LABEL_REACH * reference.radius).powi(2);
-            let origin = places.point(reference.row);
-            for &(row, _) in &reference.labels {
-                let row = row as usize;
-                let d = squared_distance(origin, places.point(row));
-                if d < reach && d < closest[row] {
-                    closest[row] = d;
-                    nearest[row] = k as u32;
-                }
-            }
-        }
-        let regular = |row: u32| analysis.roles[row as usize] == Role::Regular;
-        let mut node_of = vec![NONE; n];
-        let mut rows = Vec::new();
-        for (&row, &inside) in region.rows.iter().zip(&region.inside) {
-            if inside && regular(row) {
-                node_of[row as usize] = rows.len() as u32;
-                rows.push(row);
-            }
-        }
+        let labels = Labels::new(analysis, references);
         let width = analyzer.cloud.dimension();
         let mut coordinates = Vec::with_capacity(region.rows.len() * width);
         for &row in &region.rows {
@@ -210,85 +256,110 @@ impl CellGraph {
         }
         let tree = BallTree::new(width, &coordinates);
         drop(coordinates);
-        let is_node = |k: u32| node_of[region.rows[k as usize] as usize] != NONE;
-        let mut lists = tree.nearest_of_each(GRAPH_NEIGHBORS, is_node, analyzer.execute);
-        drop(tree);
-        // Where neighbors are farther than the margin there may be nearer ones beyond it.
-        let mut near = Vec::new();
-        for list in &mut lists {
-            let last = list.near.last().map_or(f64::INFINITY, |x| x.0);
-            let full = list.near.len() == GRAPH_NEIGHBORS;
-            let row = region.rows[list.index as usize];
-            list.index = row;
-            if full && last <= region.margin * region.margin {
-                for x in &mut list.near {
-                    x.1 = region.rows[x.1 as usize];
-                }
-            } else {
-                analyzer
-                    .oracle
-                    .nearest(row as usize, GRAPH_NEIGHBORS + 1, &mut near);
-                list.near.clear();
-                list.near.extend(
-                    near.iter()
-                        .filter(|x| x.index != row as usize)
-                        .map(|x| (x.distance.as_f64(), x.index as u32)),
-                );
-            }
+        let is_node = |k: u32| {
+            let row = region.rows[k as usize] as usize;
+            region.inside[k as usize] && analysis.roles[row] == Role::Regular
+        };
+        let mut node_of = vec![NONE; analysis.roles.len()];
+        let mut rows = Vec::new();
+        for &k in tree.order().iter().filter(|&&k| is_node(k)) {
+            let row = region.rows[k as usize];
+            node_of[row as usize] = rows.len() as u32;
+            rows.push(row);
         }
-        let mut cut = 0;
-        let mut edges: Vec<(u32, u32)> = Vec::with_capacity(lists.len() * GRAPH_NEIGHBORS * 2);
-        for list in &lists {
-            let a = node_of[list.index as usize];
-            for &(_, row) in &list.near {
-                let b = node_of[row as usize];
-                if b == NONE {
-                    continue;
-                }
-                if separated(
-                    list.index as usize,
-                    row as usize,
-                    references,
-                    &nearest,
-                    &closest,
-                ) {
-                    cut += 1;
+        let all_links = tree.nearest_of_each(
+            GRAPH_NEIGHBORS,
+            is_node,
+            analyzer.execute,
+            |index, near| -> Links {
+                let from = region.rows[index as usize] as usize;
+                let mut links = Links {
+                    targets: [NONE; GRAPH_NEIGHBORS],
+                    cut: 0,
+                };
+                let mut add = |k: usize, to: usize| {
+                    let node = node_of[to];
+                    if node == NONE {
+                    } else if labels.separated(from, to) {
+                        links.cut += 1;
+                    } else {
+                        links.targets[k] = node;
+                    }
+                };
+                // Where neighbors are farther than the margin there may be nearer ones beyond it.
+                let last = near.last().map_or(f64::INFINITY, |x| x.0);
+                if near.len() == GRAPH_NEIGHBORS && last <= region.margin * region.margin {
+                    for (k, x) in near.iter().enumerate() {
+                        add(k, region.rows[x.1 as usize] as usize);
+                    }
                 } else {
-                    edges.push((a, b));
-                    edges.push((b, a));
+                    let mut near = Vec::new();
+                    analyzer
+                        .oracle
+                        .nearest(from, GRAPH_NEIGHBORS + 1, &mut near);
+                    let others = near.iter().filter(|x| x.index != from);
+                    for (k, x) in others.take(GRAPH_NEIGHBORS).enumerate() {
+                        add(k, x.index);
+                    }
                 }
-            }
+                links
+            },
+        );
+        drop(tree);
+        let mut places = Vec::with_capacity(rows.len() * width);
+        for &row in &rows {
+            places.extend_from_slice(analysis.places.point(row as usize));
         }
-        drop(lists);
-        let (starts, targets) = compressed(rows.len(), &edges);
+        let (starts, targets) = compressed(&all_links);
         Self {
             node_of,
             rows,
+            width,
+            places,
             starts,
             targets,
-            cut,
+            cut: all_links.iter().map(|links| links.cut).sum(),
         }
     }
 
     fn around(&self, node: usize) -> &[u32] {
         &self.targets[self.starts[node]..self.starts[node + 1]]
     }
+
+    /// Row of a node.
+    pub(super) fn row(&self, node: usize) -> usize {
+        self.rows[node] as usize
+    }
+
+    /// Place of a node.
+    pub(super) fn place(&self, node: usize) -> &[f64] {
+        &self.places[node * self.width..(node + 1) * self.width]
+    }
 }
 
-/// The targets of directed edges by source, each once, with where those of a source start.
-fn compressed(count: usize, edges: &[(u32, u32)]) -> (Vec<usize>, Vec<u32>) {
+/// The nodes that are linked to each, from either side and each once, with where those of a node start.
+fn compressed(links: &[Links]) -> (Vec<usize>, Vec<u32>) {
+    let count = links.len();
+    let pairs = || {
+        let targets = |links: &Links| links.targets.into_iter().filter(|&b| b != NONE);
+        (links.iter().enumerate())
+            .flat_map(move |(a, links)| targets(links).map(move |b| (a as u32, b)))
+    };
     let mut starts = vec![0usize; count + 1];
-    for &(a, _) in edges {
+    for (a, b) in pairs() {
         starts[a as usize + 1] += 1;
+        starts[b as usize + 1] += 1;
     }
     for k in 0..count {
         starts[k + 1] += starts[k];
     }
     let mut next = starts.clone();
-    let mut all = vec![0u32; edges.len()];
-    for &(a, b) in edges {
-        all[next[a as usize]] = b;
-        next[a as usize] += 1;
+    let mut all = vec![0u32; starts[count]];
+    for (a, b) in pairs() {
+        for (a, b) in [(a, b), (b, a)] {
+            all[next[a as usize]] = b;
+            next[a as usize] += 1;
+        }
     }
     let mut kept = 0;
     let mut from = 0;
@@ -310,30 +381,6 @@ fn compressed(count: usize, edges: &[(u32, u32)]) -> (Vec<usize>, Vec<u32>) {
     (starts, all)
 }
 
-/// Whether the labels put `i` and `j` into different strata, or onto the curve itself.
-fn separated(
-    i: usize,
-    j: usize,
-    references: &[Reference],
-    nearest: &[u32],
-    closest: &[f64],
-) -> bool {
-    let mut order = [(closest[i], nearest[i]), (closest[j], nearest[j])];
-    if order[1].0 < order[0].0 {
-        order.swap(0, 1);
-    }
-    for (_, k) in order {
-        if k == NONE {
-            continue;
-        }
-        let reference = &references[k as usize];
-        if let (Some(a), Some(b)) = (reference.label(i), reference.label(j)) {
-            return a != b || !reference.is_cell(a);
-        }
-    }
-    false
-}
-
 /// A flood with its memory of what was reached, reusable.
 #[derive(Default)]
 pub(super) struct Flood {
@@ -345,7 +392,7 @@ pub(super) struct Flood {
 }
 
 impl Flood {
-    /// Everything that paths from the rows `from` reach without leaving the rows that are `inside`.
+    /// Everything that paths from the rows `from` reach without leaving the nodes that are `inside`.
     pub(super) fn run(&mut self, graph: &CellGraph, from: &[u32], inside: impl Fn(usize) -> bool) {
         if self.stamp.len() != graph.rows.len() {
             self.stamp = vec![0; graph.rows.len()];
@@ -355,7 +402,7 @@ impl Flood {
         self.nodes.clear();
         for &row in from {
             let node = graph.node_of[row as usize];
-            if node != NONE && self.stamp[node as usize] != self.round && inside(row as usize) {
+            if node != NONE && self.stamp[node as usize] != self.round && inside(node as usize) {
                 self.stamp[node as usize] = self.round;
                 self.nodes.push(node);
             }
@@ -365,7 +412,7 @@ impl Flood {
             for &other in graph.around(self.nodes[at] as usize) {
                 if self.stamp[other as usize] != self.round {
                     self.stamp[other as usize] = self.round;
-                    if inside(graph.rows[other as usize] as usize) {
+                    if inside(other as usize) {
                         self.nodes.push(other);
                     }
                 }

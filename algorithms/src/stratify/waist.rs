@@ -374,13 +374,16 @@ pub fn stratify<S: Scalar>(
                 if let Some(charts) = charts {
                     ball.fill(charts.oracle, rows[job.landmark], radius);
                 }
-                let inside = |row: usize| match charts {
-                    None => squared_distance(origin, places.point(row)) < reach,
-                    Some(_) => ball.holds(row),
+                let node_inside = |node: usize| match charts {
+                    None => squared_distance(origin, graph.place(node)) < reach,
+                    Some(_) => ball.holds(graph.row(node)),
                 };
-                hits.flood.run(&graph, from, inside);
-                let found =
-                    hits.members(&contacts, &landmark_at, job.landmark, |k| inside(rows[k]));
+                let inside = |k: usize| match charts {
+                    None => squared_distance(origin, places.point(rows[k])) < reach,
+                    Some(_) => ball.holds(rows[k]),
+                };
+                hits.flood.run(&graph, from, node_inside);
+                let found = hits.members(&contacts, &landmark_at, job.landmark, inside);
                 nearest_first(found, |k| match charts {
                     None => squared_distance(origin, places.point(rows[k as usize])),
                     Some(_) => ball.distance(rows[k as usize]),
