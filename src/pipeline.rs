@@ -815,6 +815,9 @@ fn add_where_astray<S: Scalar>(
     dl: f64,
     extra: &mut Vec<usize>,
 ) {
+    if stratification.rows.len() == analysis.roles.len() {
+        return; // every point is a landmark already
+    }
     let place = |v: u32| analysis.places.point(stratification.rows[v as usize]);
     let mut near: Vec<Neighbor<S>> = Vec::new();
     let mut middle: Vec<S> = Vec::new();

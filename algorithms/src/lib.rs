@@ -3,6 +3,7 @@
 
 pub mod alignment;
 mod audit;
+mod balls;
 pub mod certificate;
 pub mod chart;
 pub mod dimension;

@@ -4,8 +4,9 @@ use super::distance::point_triangle;
 use super::frame::Frame;
 use super::geometry::corners;
 use super::quality::quantile;
-use super::tree::{Bounds, Tree};
+use super::tree::Tree;
 use super::{CertificateOptions, Place, Violation, ViolationKind, within};
+use crate::balls::BallTree;
 use crosscap_core::{Mesh, PointCloud, squared_distance};
 use serde::Serialize;
 
@@ -84,16 +85,12 @@ fn picks(n: usize, budget: usize) -> impl Iterator<Item = usize> {
 /// and the largest of about n independent holes is sqrt(ln n / (pi r)). For points chosen with a
 /// least distance, as many as fit, no hole is larger than that distance. How the low quantiles
 /// compare with the median tells the two apart.
-fn spacing(points: &PointCloud<f64>, frame: &Frame, tree: &Tree) -> (f64, f64) {
+fn spacing(points: &PointCloud<f64>, tree: &BallTree) -> (f64, f64) {
     let mut near: Vec<f64> = picks(points.len(), 3000)
         .filter_map(|p| {
-            let row = points.point(p);
-            tree.nearest(&frame.spot(row), frame.slack, f64::INFINITY, |q| {
-                let d = squared_distance(row, points.point(q as usize));
-                // the point itself, and its copies
-                if d > 0.0 { d } else { f64::INFINITY }
-            })
-            .map(|(_, d)| d.sqrt())
+            // not the point itself, nor its copies
+            let found = tree.nearest(points.point(p), |d| d > 0.0);
+            found.map(|(_, d)| d.sqrt())
         })
         .collect();
     near.sort_unstable_by(f64::total_cmp);
@@ -197,20 +194,11 @@ pub(super) fn check(
     report.points_to_mesh = Some(distances);
 
     // mesh to points
-    let spots: Vec<Bounds> = points
-        .iter()
-        .map(|row| Bounds::around(&[frame.spot(row)], frame.slack))
-        .collect();
-    let cloud = Tree::new(&spots);
-    drop(spots);
-    let (median, gap) = spacing(points, frame, &cloud);
+    let cloud = BallTree::new(points.dimension(), points.coordinates());
+    let (median, gap) = spacing(points, &cloud);
     report.point_spacing = median / separation;
     report.point_gap = gap / separation;
-    let nearest = |row: &[f64]| {
-        cloud.nearest(&frame.spot(row), frame.slack, f64::INFINITY, |q| {
-            squared_distance(row, points.point(q as usize))
-        })
-    };
+    let nearest = |row: &[f64]| cloud.nearest(row, |_| true);
     let away_limit = limits.mesh_to_points + noise + report.point_gap;
     let off_limit = limits.off_plane + noise;
     let (mut values, mut off_values) = (Vec::new(), Vec::new());

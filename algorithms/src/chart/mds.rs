@@ -108,9 +108,12 @@ fn leading(gram: &DMatrix<f64>, wanted: usize) -> Option<Pairs> {
     if count < SMALLEST_SEARCH.max(2 * block) {
         return None;
     }
-    // A fixed start that leans on no direction.
-    let mut basis = DMatrix::from_fn(count, block, |i, k| {
-        (1.7 * (i * block + k) as f64 + 0.3).cos()
+    // A fixed start that leans on no direction (Knuth's linear congruential generator).
+    let mut state = 1_u64;
+    let mut basis = DMatrix::from_fn(count, block, |_, _| {
+        state =
+            (state.wrapping_mul(6_364_136_223_846_793_005)).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
     });
     let mut image = DMatrix::zeros(count, block);
     for round in 1..=ROUNDS {

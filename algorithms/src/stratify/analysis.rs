@@ -1,8 +1,8 @@
 //! Which stratum every point of the cloud is in.
 
-use super::balls::BallTree;
 use super::net::{Asked, SPEAKS_FOR};
 use crate::audit::{self, Faults};
+use crate::balls::BallTree;
 use crate::execute::{self, Execute};
 use crate::moments::LocalDimension;
 use crate::principal::PrincipalFrame;

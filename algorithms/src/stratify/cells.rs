@@ -1,7 +1,7 @@
 //! Cells: what a flood over the dense points reaches without crossing a curve.
 
 use super::analysis::{Analysis, Analyzer, Role, Scratch};
-use super::balls::BallTree;
+use crate::balls::BallTree;
 use crate::execute;
 use crosscap_core::{Decomposition, Scalar, squared_distance};
 
@@ -287,10 +287,10 @@ impl CellGraph {
                     }
                 };
                 // Where neighbors are farther than the margin there may be nearer ones beyond it.
-                let last = near.last().map_or(f64::INFINITY, |x| x.0);
+                let last = near.last().map_or(f64::INFINITY, |x| x.square());
                 if near.len() == GRAPH_NEIGHBORS && last <= region.margin * region.margin {
                     for (k, x) in near.iter().enumerate() {
-                        add(k, region.rows[x.1 as usize] as usize);
+                        add(k, region.rows[x.index() as usize] as usize);
                     }
                 } else {
                     let mut near = Vec::new();
@@ -340,44 +340,43 @@ impl CellGraph {
 /// The nodes that are linked to each, from either side and each once, with where those of a node start.
 fn compressed(links: &[Links]) -> (Vec<usize>, Vec<u32>) {
     let count = links.len();
+    // Bit k: the k-th target has no link back.
+    let one_sided: Vec<u16> = (0_u32..)
+        .zip(links)
+        .map(|(a, own)| {
+            let bits = own.targets.iter().enumerate().map(|(k, &b)| {
+                let back = b == NONE || links[b as usize].targets.contains(&a);
+                u16::from(!back) << k
+            });
+            bits.sum()
+        })
+        .collect();
     let pairs = || {
-        let targets = |links: &Links| links.targets.into_iter().filter(|&b| b != NONE);
-        (links.iter().enumerate())
-            .flat_map(move |(a, links)| targets(links).map(move |b| (a as u32, b)))
+        (0_u32..)
+            .zip(links.iter().zip(&one_sided))
+            .flat_map(|(a, (own, &one_sided))| {
+                let targets = own.targets.iter().enumerate().filter(|x| *x.1 != NONE);
+                targets.map(move |(k, &b)| (a, b, one_sided >> k & 1 == 1))
+            })
     };
     let mut starts = vec![0usize; count + 1];
-    for (a, b) in pairs() {
+    for (a, b, one_sided) in pairs() {
         starts[a as usize + 1] += 1;
-        starts[b as usize + 1] += 1;
+        starts[b as usize + 1] += usize::from(one_sided);
     }
     for k in 0..count {
         starts[k + 1] += starts[k];
     }
     let mut next = starts.clone();
     let mut all = vec![0u32; starts[count]];
-    for (a, b) in pairs() {
-        for (a, b) in [(a, b), (b, a)] {
-            all[next[a as usize]] = b;
-            next[a as usize] += 1;
+    for (a, b, one_sided) in pairs() {
+        all[next[a as usize]] = b;
+        next[a as usize] += 1;
+        if one_sided {
+            all[next[b as usize]] = a;
+            next[b as usize] += 1;
         }
     }
-    let mut kept = 0;
-    let mut from = 0;
-    for k in 0..count {
-        let until = starts[k + 1];
-        all[from..until].sort_unstable();
-        starts[k] = kept;
-        for at in from..until {
-            if at == from || all[at] != all[at - 1] {
-                all[kept] = all[at];
-                kept += 1;
-            }
-        }
-        from = until;
-    }
-    starts[count] = kept;
-    all.truncate(kept);
-    all.shrink_to_fit();
     (starts, all)
 }
 

@@ -1,7 +1,6 @@
 //! From points to the narrow waist: which stratum every point is in, landmarks, chains, cells.
 
 mod analysis;
-mod balls;
 mod cells;
 mod chains;
 mod net;

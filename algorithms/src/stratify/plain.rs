@@ -1,7 +1,7 @@
 //! Landmarks whose chart holds one sheet and no curve: there nearness alone says what belongs
 //! together, and no flood is needed.
 
-use super::balls::BallTree;
+use crate::balls::BallTree;
 use nalgebra::{SMatrix, SVector};
 
 /// Coefficients of a quadratic height over two directions.

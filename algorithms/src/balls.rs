@@ -1,4 +1,4 @@
-//! A tree of balls over a few places, for queries about many of them at once.
+//! A tree of balls over places of R^N: what is near a place, the nearest of one and of many at once.
 
 use crate::execute::{self, Execute};
 use crosscap_core::squared_distance;
@@ -29,7 +29,7 @@ struct Node {
 /// Places of R^N in leaf order under nested balls.
 ///
 /// Built in O(n log n) distances; the neighbors of places that lie together are looked up leaf by leaf.
-pub(super) struct BallTree {
+pub(crate) struct BallTree {
     width: usize,
     /// The caller's index at every position.
     order: Vec<u32>,
@@ -39,18 +39,39 @@ pub(super) struct BallTree {
     centers: Vec<f64>,
 }
 
+/// Squared distance of a place, then its index, as one number that orders like the two: the bits of
+/// nonnegative numbers are in their order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Near(u128);
+
+impl Near {
+    fn new(square: f64, index: u32) -> Self {
+        Self(u128::from(square.to_bits()) << 32 | u128::from(index))
+    }
+
+    /// The squared distance.
+    pub(crate) fn square(self) -> f64 {
+        f64::from_bits((self.0 >> 32) as u64)
+    }
+
+    /// The caller's index of the place.
+    pub(crate) fn index(self) -> u32 {
+        self.0 as u32
+    }
+}
+
 /// Buffers of one thread.
 #[derive(Default)]
 struct Search {
     /// Leaves with their gap.
     around: Vec<(f64, u32)>,
     place: Vec<f64>,
-    near: Vec<(f64, u32)>,
+    near: Vec<Near>,
 }
 
 impl BallTree {
     /// A tree over `places`, `width` numbers each; they are named by their position there.
-    pub(super) fn new(width: usize, places: &[f64]) -> Self {
+    pub(crate) fn new(width: usize, places: &[f64]) -> Self {
         let count = places.len() / width.max(1);
         let mut tree = Self {
             width,
@@ -107,7 +128,8 @@ impl BallTree {
         let axis = (1..width).fold(0, |best, k| if spread(k) > spread(best) { k } else { best });
         keyed.clear();
         keyed.extend(rows.iter().map(|&i| (places[i as usize * width + axis], i)));
-        let half = rows.len() / 2;
+        // Full leaves, but for the last.
+        let half = (rows.len() / 2).div_ceil(LEAF) * LEAF;
         keyed.select_nth_unstable_by(half, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (row, key) in rows.iter_mut().zip(&*keyed) {
             *row = key.1;
@@ -146,7 +168,7 @@ impl BallTree {
     }
 
     /// The caller's indices in the order of the tree.
-    pub(super) fn order(&self) -> &[u32] {
+    pub(crate) fn order(&self) -> &[u32] {
         &self.order
     }
 
@@ -172,7 +194,7 @@ impl BallTree {
     }
 
     /// Visits every place closer to `place` than `radius`, with its squared distance.
-    pub(super) fn within(&self, place: &[f64], radius: f64, mut visit: impl FnMut(u32, f64)) {
+    pub(crate) fn within(&self, place: &[f64], radius: f64, mut visit: impl FnMut(u32, f64)) {
         self.any_within(place, radius, |index, square| {
             visit(index, square);
             false
@@ -181,7 +203,7 @@ impl BallTree {
 
     /// Whether `test` holds for a place closer to `place` than `radius`; it gets the squared distance, and
     /// is not asked any further once it held.
-    pub(super) fn any_within(
+    pub(crate) fn any_within(
         &self,
         place: &[f64],
         radius: f64,
@@ -222,7 +244,7 @@ impl BallTree {
                     return true;
                 }
             } else {
-                // Halves, so the tree is not higher than the bits of an index.
+                // About halves, so the tree is not higher than the bits of an index.
                 stack[height] = node.right;
                 stack[height + 1] = at as u32 + 1;
                 height += 2;
@@ -231,14 +253,66 @@ impl BallTree {
         false
     }
 
+    /// The place nearest to `place` of those that `accept`, by their squared distance, with that distance;
+    /// ties by index.
+    pub(crate) fn nearest(
+        &self,
+        place: &[f64],
+        accept: impl Fn(f64) -> bool,
+    ) -> Option<(u32, f64)> {
+        let gap = |at: usize| {
+            squared_distance(place, self.center(at)).sqrt() * (1.0 - ROUNDING)
+                - self.nodes[at].radius
+        };
+        let mut best: Option<Near> = None;
+        let (mut reach, mut limit) = (f64::INFINITY, f64::INFINITY);
+        let mut stack = [(0.0, 0_u32); 96];
+        let mut height = usize::from(!self.nodes.is_empty());
+        while height > 0 {
+            height -= 1;
+            let (away, at) = stack[height];
+            if away > reach {
+                continue;
+            }
+            let node = &self.nodes[at as usize];
+            if node.right == 0 {
+                let order = &self.order[node.start as usize..node.end as usize];
+                for (&index, &square) in order.iter().zip(&self.squares(node, place)) {
+                    if square > limit {
+                        continue;
+                    }
+                    let found = Near::new(square, index);
+                    if accept(square) && best.is_none_or(|b| found < b) {
+                        best = Some(found);
+                        limit = square;
+                        reach = square.sqrt() * (1.0 + ROUNDING);
+                    }
+                }
+            } else {
+                let first = (gap(at as usize + 1), at + 1);
+                let second = (gap(node.right as usize), node.right);
+                let (near, far) = if first.0 <= second.0 {
+                    (first, second)
+                } else {
+                    (second, first)
+                };
+                stack[height] = far;
+                stack[height + 1] = near;
+                height += 2;
+            }
+        }
+        best.map(|found| (found.index(), found.square()))
+    }
+
     /// What `each` makes of every place that `wanted` names and its `count` nearest, in the order of the
-    /// tree: with squared distances, ties by index, the farthest last, the place itself left out.
-    pub(super) fn nearest_of_each<T: Send + Sync>(
+    /// tree: with squared distances, ties by index, in no order but that the last of `count` is the farthest; the
+    /// place itself is left out.
+    pub(crate) fn nearest_of_each<T: Send + Sync>(
         &self,
         count: usize,
         wanted: impl Fn(u32) -> bool + Sync,
         execute: &dyn Execute,
-        each: impl Fn(u32, &[(f64, u32)]) -> T + Sync,
+        each: impl Fn(u32, &[Near]) -> T + Sync,
     ) -> Vec<T> {
         let leaves: Vec<usize> = (0..self.nodes.len())
             .filter(|&at| self.nodes[at].right == 0)
@@ -261,7 +335,7 @@ impl BallTree {
         count: usize,
         wanted: &impl Fn(u32) -> bool,
         search: &mut Search,
-        each: &impl Fn(u32, &[(f64, u32)]) -> T,
+        each: &impl Fn(u32, &[Near]) -> T,
     ) -> Vec<T> {
         let own = &self.nodes[leaf];
         let positions = own.start as usize..own.end as usize;
@@ -324,25 +398,23 @@ impl BallTree {
     }
 
     /// Adds the places of a leaf that are no farther from `place` than the root of `limit`.
-    fn add_closer(&self, leaf: &Node, place: &[f64], limit: f64, near: &mut Vec<(f64, u32)>) {
+    fn add_closer(&self, leaf: &Node, place: &[f64], limit: f64, near: &mut Vec<Near>) {
         let order = &self.order[leaf.start as usize..leaf.end as usize];
         for (&other, &square) in order.iter().zip(&self.squares(leaf, place)) {
             if square <= limit {
-                near.push((square, other));
+                near.push(Near::new(square, other));
             }
         }
     }
 }
 
-/// Keeps the `count` nearest, ties by index, the farthest of them last; returns how far it is, infinity
-/// where there are fewer.
-fn keep_nearest(near: &mut Vec<(f64, u32)>, count: usize) -> f64 {
+/// Keeps the `count` nearest, ties by index, the farthest of them last, and returns how far it is; infinity,
+/// and nothing changed, where there are fewer.
+fn keep_nearest(near: &mut Vec<Near>, count: usize) -> f64 {
     if near.len() < count {
         return f64::INFINITY;
     }
-    let (_, last, _) =
-        near.select_nth_unstable_by(count - 1, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let farthest = last.0;
+    let farthest = near.select_nth_unstable(count - 1).1.square();
     near.truncate(count);
     farthest
 }
@@ -374,8 +446,9 @@ mod tests {
             prop_assert_eq!(in_order, expected);
             for (i, mut near) in found {
                 let farthest = near.last().copied();
-                near.sort_by(|a, b| a.partial_cmp(b).unwrap());
-                prop_assert_eq!(farthest, near.last().copied());
+                near.sort_unstable();
+                prop_assert!(near.len() < count || farthest == near.last().copied());
+                let near: Vec<(f64, u32)> = near.iter().map(|x| (x.square(), x.index())).collect();
                 let i = i as usize;
                 let mut all: Vec<(f64, u32)> =
                     (0..n).filter(|&j| j != i).map(|j| (square(i, j), j as u32)).collect();
@@ -389,6 +462,15 @@ mod tests {
                 inside.sort_unstable();
                 let expected: Vec<usize> = (0..n).filter(|&j| square(i, j) < radius * radius).collect();
                 prop_assert_eq!(inside, expected);
+                for least in [0.0, 1.0] {
+                    let own = &places[i * width..(i + 1) * width];
+                    let found = tree.nearest(own, |square| square >= least);
+                    let expected = (0..n)
+                        .map(|j| (square(i, j), j as u32))
+                        .filter(|x| x.0 >= least)
+                        .min_by(|a, b| a.partial_cmp(b).unwrap());
+                    prop_assert_eq!(found.map(|(j, d)| (d, j)), expected);
+                }
                 let first = (0..n).find(|&j| j % 5 == 2 && square(i, j) < radius * radius);
                 let own = &places[i * width..(i + 1) * width];
                 prop_assert_eq!(tree.any_within(own, radius, |j, _| j % 5 == 2), first.is_some());
