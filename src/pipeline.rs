@@ -496,12 +496,11 @@ impl<S: Scalar> Pipeline<S> {
         let usual = self.analysis_metric.is_none()
             && parameters.spaces.metric != MetricName::Geodesic
             && parameters.spaces.neighborhoods == Neighborhoods::Radius;
-        let known =
-            match self.estimator {
-                None if !parameters.surface && usual => MomentTree::new(cloud)?
-                    .settled_dimensions(parameters.eps, parameters.dt, &threads)?,
-                _ => Vec::new(),
-            };
+        let known = match self.estimator {
+            None if !parameters.surface && usual => MomentTree::with(cloud, &threads)?
+                .settled_dimensions(parameters.eps, parameters.dt, &threads)?,
+            _ => Vec::new(),
+        };
         let principal = PrincipalComponents::new(parameters.dt)?;
         let estimator: &dyn DimensionEstimator<Scalar = S> =
             self.estimator.as_deref().unwrap_or(&principal);

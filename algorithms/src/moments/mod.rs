@@ -42,7 +42,7 @@ mod tree;
 mod tests;
 
 use crate::dimension::PrincipalComponents;
-use crate::execute::{self, Execute};
+use crate::execute::{self, Execute, Serial};
 use crosscap_core::{Error, PointCloud, Scalar};
 use group::{Ball, Group, Sweep};
 use reach::Reach;
@@ -101,12 +101,20 @@ pub struct MomentTree<'a, S> {
 }
 
 impl<'a, S: Scalar> MomentTree<'a, S> {
-    /// Builds the tree.
+    /// Builds the tree in this thread.
+    ///
+    /// # Errors
+    /// Those of [`MomentTree::with`].
+    pub fn new(cloud: &'a PointCloud<S>) -> Result<Self, Error> {
+        Self::with(cloud, &Serial)
+    }
+
+    /// Builds the tree, the same one whatever `execute` is.
     ///
     /// # Errors
     /// [`Error::Shape`] when there are more points than a `u32` can count, [`Error::Parameter`]
     /// when a coordinate is so large (above 1e36 for `f32`, 1e150 for `f64`) that squared distances overflow.
-    pub fn new(cloud: &'a PointCloud<S>) -> Result<Self, Error> {
+    pub fn with(cloud: &'a PointCloud<S>, execute: &dyn Execute) -> Result<Self, Error> {
         if u32::try_from(cloud.len()).is_err() {
             return Err(Error::Shape {
                 found: format!("{} points", cloud.len()),
@@ -132,7 +140,7 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
         }
         Ok(Self {
             cloud,
-            tree: Tree::new(cloud),
+            tree: Tree::new(cloud, execute),
         })
     }
 
@@ -315,7 +323,7 @@ impl BallMoments {
 }
 
 /// Number of points and dimension of the ball of radius `eps` about every point of a cloud:
-/// [`MomentTree::new`] and [`MomentTree::dimensions`] in one.
+/// [`MomentTree::with`] and [`MomentTree::dimensions`] in one.
 ///
 /// # Errors
 /// Those of the two.
@@ -325,7 +333,7 @@ pub fn dimensions<S: Scalar>(
     dt: f64,
     execute: &dyn Execute,
 ) -> Result<Vec<LocalDimension>, Error> {
-    MomentTree::new(cloud)?.dimensions(eps, dt, execute)
+    MomentTree::with(cloud, execute)?.dimensions(eps, dt, execute)
 }
 
 /// Workspace of one thread.

@@ -1,7 +1,9 @@
 //! Where the tree sees the points: centered, turned to principal axes, without null directions.
 
+use crate::execute::{self, Execute};
 use crosscap_core::{PointCloud, Scalar};
 use nalgebra::{DMatrix, SymmetricEigen};
+use std::sync::{Mutex, PoisonError};
 
 /// Up to this many coordinates a cloud is not turned: it would cost more than it saves.
 const UNTURNED: usize = 8;
@@ -9,6 +11,10 @@ const UNTURNED: usize = 8;
 const WIDEST_TURN: usize = 256;
 /// Points that the axes are computed from: they need not be exact.
 const SAMPLE: usize = 4096;
+/// Points that are turned by one job.
+const TURNED_AT_ONCE: usize = 8192;
+/// Points that the center is computed from.
+const MEDIAN_SAMPLE: usize = 65_536;
 
 /// An affine map from R^N to the coordinates of the tree: an isometry times a power of two, up
 /// to rounding. Nothing that is decided depends on which one it is.
@@ -31,7 +37,7 @@ pub(super) struct Placement {
 
 impl Placement {
     /// The map, and the places of all points in the order of the cloud.
-    pub(super) fn of<S: Scalar>(cloud: &PointCloud<S>) -> (Self, Vec<f64>) {
+    pub(super) fn of<S: Scalar>(cloud: &PointCloud<S>, execute: &dyn Execute) -> (Self, Vec<f64>) {
         let ambient = cloud.dimension();
         let center = median(cloud);
         let largest = (cloud.iter())
@@ -62,7 +68,7 @@ impl Placement {
         if ambient > WIDEST_TURN {
             placement.permute(&mut places);
         } else if ambient > UNTURNED && !cloud.is_empty() {
-            placement.turn(&mut places);
+            placement.turn(&mut places, execute);
         }
         (placement, places)
     }
@@ -85,7 +91,7 @@ impl Placement {
     }
 
     /// Turns to principal axes and drops directions in which there is nothing but rounding.
-    fn turn(&mut self, places: &mut Vec<f64>) {
+    fn turn(&mut self, places: &mut Vec<f64>, execute: &dyn Execute) {
         let n = self.ambient;
         let sample = self.sample(places);
         let eigen = SymmetricEigen::new(sample.tr_mul(&sample));
@@ -95,16 +101,36 @@ impl Placement {
         for &k in &order {
             axes.extend(eigen.eigenvectors.column(k).iter());
         }
+        let columns: Vec<f64> = (0..n)
+            .flat_map(|j| axes.chunks_exact(n).map(move |axis| axis[j]))
+            .collect();
         // In place: a second copy of a large cloud is most of the memory there is.
-        let mut turned = vec![0.0; n];
-        let mut largest = vec![0.0_f64; n];
-        for row in places.chunks_exact_mut(n) {
-            for ((axis, l), y) in axes.chunks_exact(n).zip(&mut largest).zip(&mut turned) {
-                let along: f64 = axis.iter().zip(&*row).map(|(a, x)| a * x).sum();
-                *y = along;
-                *l = l.max(along.abs());
+        let block = n * TURNED_AT_ONCE;
+        let blocks: Vec<Mutex<&mut [f64]>> = places.chunks_mut(block).map(Mutex::new).collect();
+        let found = execute::few(execute, blocks.len(), |b| {
+            let mut largest = vec![0.0_f64; n];
+            let mut turned = vec![0.0; n];
+            let mut rows = blocks[b].lock().unwrap_or_else(PoisonError::into_inner);
+            for row in rows.chunks_exact_mut(n) {
+                turned.fill(0.0);
+                for (column, x) in columns.chunks_exact(n).zip(&*row) {
+                    for (y, a) in turned.iter_mut().zip(column) {
+                        *y += a * x;
+                    }
+                }
+                for (l, y) in largest.iter_mut().zip(&turned) {
+                    *l = l.max(y.abs());
+                }
+                row.copy_from_slice(&turned);
             }
-            row.copy_from_slice(&turned);
+            largest
+        });
+        drop(blocks);
+        let mut largest = vec![0.0_f64; n];
+        for own in found {
+            for (l, o) in largest.iter_mut().zip(own) {
+                *l = l.max(o);
+            }
         }
         let rounding = 16.0 * n as f64 * f64::EPSILON;
         let kept = largest
@@ -158,18 +184,19 @@ impl Placement {
     }
 }
 
-/// Median of every coordinate.
+/// Median of every coordinate, of so many points that strays move it no more than that of all.
 fn median<S: Scalar>(cloud: &PointCloud<S>) -> Vec<f64> {
-    let count = cloud.len();
-    let mut column = Vec::with_capacity(count);
+    let rows = || (0..cloud.len()).step_by(cloud.len().div_ceil(MEDIAN_SAMPLE).max(1));
+    let mut column = Vec::new();
     (0..cloud.dimension())
         .map(|k| {
             column.clear();
-            column.extend(cloud.iter().map(|row| row[k].as_f64()));
-            if count == 0 {
+            column.extend(rows().map(|row| cloud.point(row)[k].as_f64()));
+            let half = column.len() / 2;
+            if column.is_empty() {
                 0.0
             } else {
-                *column.select_nth_unstable_by(count / 2, f64::total_cmp).1
+                *column.select_nth_unstable_by(half, f64::total_cmp).1
             }
         })
         .collect()

@@ -2,12 +2,18 @@
 
 use super::packed;
 use super::placement::Placement;
-use crosscap_core::{PointCloud, Scalar};
+use crate::execute::{self, Execute};
+use crosscap_core::{PointCloud, Scalar, squared_distance};
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 /// Coordinates that nodes are split along.
 const SPLIT_AXES: usize = 8;
 /// With more coordinates the nodes keep no outer products: they would outgrow the cloud.
 pub(super) const WIDEST_MOMENTS: usize = 64;
+
+/// Levels of the tree below which its parts are built side by side.
+const SHARED_LEVELS: usize = 5;
 
 /// A run of points.
 pub(super) struct Node {
@@ -20,6 +26,16 @@ pub(super) struct Node {
 }
 
 impl Node {
+    /// A leaf, for now.
+    fn of(start: u32, count: usize) -> Self {
+        Self {
+            start,
+            end: start + count as u32,
+            right: 0,
+            radius: 0.0,
+        }
+    }
+
     pub(super) fn count(&self) -> usize {
         (self.end - self.start) as usize
     }
@@ -48,8 +64,9 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    pub(super) fn new<S: Scalar>(cloud: &PointCloud<S>) -> Self {
-        let (placement, unordered) = Placement::of(cloud);
+    /// The tree, which does not depend on what runs its parts.
+    pub(super) fn new<S: Scalar>(cloud: &PointCloud<S>, execute: &dyn Execute) -> Self {
+        let (placement, unordered) = Placement::of(cloud, execute);
         let n = placement.n;
         let mut order: Vec<u32> = (0..cloud.len() as u32).collect();
         let mut tree = Self {
@@ -63,7 +80,13 @@ impl Tree {
             leaf: if n <= 3 { 8 } else { 16 },
         };
         if !order.is_empty() {
-            tree.split(&unordered, &mut order, 0, &mut Vec::new());
+            let cut = Cut {
+                unordered: &unordered,
+                n,
+                leaf: tree.leaf,
+                execute,
+            };
+            cut.share(&mut order, 0, SHARED_LEVELS, &mut tree.nodes);
         }
         tree.places.reserve_exact(unordered.len());
         for &i in &order {
@@ -72,66 +95,93 @@ impl Tree {
         }
         tree.order = order;
         drop(unordered);
-        tree.measure();
+        tree.measure(execute);
         tree
     }
 
-    fn split(
-        &mut self,
-        unordered: &[f64],
-        rows: &mut [u32],
-        start: u32,
-        keyed: &mut Vec<(f64, u32)>,
-    ) {
-        let n = self.n;
-        let at = self.nodes.len();
-        let count = rows.len();
-        self.nodes.push(Node {
-            start,
-            end: start + count as u32,
-            right: 0,
-            radius: 0.0,
+    /// Means, scatters and radii, children first: subtrees side by side, then what is above them.
+    fn measure(&mut self, execute: &dyn Execute) {
+        let (n, width) = (self.n, self.scatter_width());
+        let count = self.nodes.len();
+        let mut means = vec![0.0; count * n];
+        let mut scatters = vec![0.0; count * width];
+        let mut radii = vec![0.0; count];
+        let mut above = Vec::new();
+        let mut subtrees = Vec::new();
+        if count > 0 {
+            self.divide(0, count, SHARED_LEVELS, &mut above, &mut subtrees);
+        }
+        let mut parts = Vec::with_capacity(subtrees.len());
+        let mut rest = (&mut means[..], &mut scatters[..], &mut radii[..]);
+        let mut from = 0;
+        for nodes in &subtrees {
+            let skipped = nodes.start - from;
+            let (_, m) = rest.0.split_at_mut(skipped * n);
+            let (_, s) = rest.1.split_at_mut(skipped * width);
+            let (_, r) = rest.2.split_at_mut(skipped);
+            let (own_means, m) = m.split_at_mut(nodes.len() * n);
+            let (own_scatters, s) = s.split_at_mut(nodes.len() * width);
+            let (own_radii, r) = r.split_at_mut(nodes.len());
+            parts.push(Mutex::new(Measures {
+                first: nodes.start,
+                means: own_means,
+                scatters: own_scatters,
+                radii: own_radii,
+            }));
+            rest = (m, s, r);
+            from = nodes.end;
+        }
+        execute::few(execute, parts.len(), |k| {
+            let mut part = parts[k].lock().unwrap_or_else(PoisonError::into_inner);
+            self.measure_nodes(subtrees[k].clone().rev(), &mut part);
         });
-        if count <= self.leaf {
-            return;
+        drop(parts);
+        let mut whole = Measures {
+            first: 0,
+            means: &mut means,
+            scatters: &mut scatters,
+            radii: &mut radii,
+        };
+        self.measure_nodes(above.into_iter().rev(), &mut whole);
+        for (node, radius) in self.nodes.iter_mut().zip(radii) {
+            node.radius = radius;
         }
-        let direction = widest(unordered, rows, n);
-        // Full leaves, but for the last.
-        let mut half = (count / 2).div_ceil(self.leaf) * self.leaf;
-        if half >= count {
-            half -= self.leaf;
-        }
-        keyed.clear();
-        keyed.extend(rows.iter().map(|&i| {
-            let lead = &unordered[i as usize * n..][..n.min(SPLIT_AXES)];
-            (
-                lead.iter().zip(&direction).map(|(y, d)| y * d).sum::<f64>(),
-                i,
-            )
-        }));
-        keyed.select_nth_unstable_by(half, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for (row, key) in rows.iter_mut().zip(&*keyed) {
-            *row = key.1;
-        }
-        let (left, right) = rows.split_at_mut(half);
-        self.split(unordered, left, start, keyed);
-        self.nodes[at].right = self.nodes.len() as u32;
-        self.split(unordered, right, start + half as u32, keyed);
+        self.means = means;
+        self.scatters = scatters;
     }
 
-    /// Means, scatters and radii, children first.
-    fn measure(&mut self) {
+    /// The subtrees so many levels below a node, whose own nodes end before `end`, and the nodes above them,
+    /// both in order.
+    fn divide(
+        &self,
+        at: usize,
+        end: usize,
+        levels: usize,
+        above: &mut Vec<usize>,
+        subtrees: &mut Vec<Range<usize>>,
+    ) {
+        let node = &self.nodes[at];
+        if node.is_leaf() || levels == 0 {
+            return subtrees.push(at..end);
+        }
+        above.push(at);
+        let right = node.right as usize;
+        self.divide(at + 1, right, levels - 1, above, subtrees);
+        self.divide(right, end, levels - 1, above, subtrees);
+    }
+
+    /// Measures nodes, every one after its children.
+    fn measure_nodes(&self, nodes: impl Iterator<Item = usize>, out: &mut Measures<'_>) {
         let n = self.n;
         let width = self.scatter_width();
-        self.means = vec![0.0; self.nodes.len() * n];
-        self.scatters = vec![0.0; self.nodes.len() * width];
+        let first = out.first;
         let mut offset = vec![0.0; n];
-        for at in (0..self.nodes.len()).rev() {
+        for at in nodes {
             let node = &self.nodes[at];
             let places = &self.places[node.start as usize * n..node.end as usize * n];
-            let (before, after) = self.means.split_at_mut((at + 1) * n);
-            let mean = &mut before[at * n..];
-            let (_, scatters_from) = self.scatters.split_at_mut(at * width);
+            let (before, after) = out.means.split_at_mut((at - first + 1) * n);
+            let mean = &mut before[(at - first) * n..];
+            let (_, scatters_from) = out.scatters.split_at_mut((at - first) * width);
             let (scatter, scatters_after) = scatters_from.split_at_mut(width);
             if node.is_leaf() {
                 for place in places.chunks_exact(n) {
@@ -161,17 +211,15 @@ impl Tree {
             }
             let mut farthest = 0.0_f64;
             for place in places.chunks_exact(n) {
-                let mut square = 0.0;
-                for ((o, y), m) in offset.iter_mut().zip(place).zip(&*mean) {
-                    *o = y - m;
-                    square += *o * *o;
-                }
-                farthest = farthest.max(square);
+                farthest = farthest.max(squared_distance(place, mean));
                 if node.is_leaf() && width > 0 {
+                    for ((o, y), m) in offset.iter_mut().zip(place).zip(&*mean) {
+                        *o = y - m;
+                    }
                     packed::add_square(scatter, &offset, 1.0);
                 }
             }
-            self.nodes[at].radius = farthest.sqrt();
+            out.radii[at - first] = farthest.sqrt();
         }
     }
 
@@ -195,6 +243,100 @@ impl Tree {
 
     pub(super) fn place(&self, position: usize) -> &[f64] {
         &self.places[position * self.n..(position + 1) * self.n]
+    }
+}
+
+/// Means, scatters and radii of the nodes from `first` on.
+struct Measures<'a> {
+    first: usize,
+    means: &'a mut [f64],
+    scatters: &'a mut [f64],
+    radii: &'a mut [f64],
+}
+
+/// What nodes are cut from.
+struct Cut<'a> {
+    /// Places in the order of the cloud.
+    unordered: &'a [f64],
+    n: usize,
+    leaf: usize,
+    execute: &'a dyn Execute,
+}
+
+impl Cut<'_> {
+    /// Cuts rows into nodes, in the order of a walk that comes to a node before its children. The two
+    /// halves of the first levels are cut side by side.
+    fn share(&self, rows: &mut [u32], start: u32, levels: usize, nodes: &mut Vec<Node>) {
+        if levels == 0 || rows.len() <= self.leaf {
+            return self.cut(rows, start, nodes, &mut Vec::new());
+        }
+        let half = self.halve(rows, &mut Vec::new());
+        nodes.push(Node::of(start, rows.len()));
+        let at = nodes.len() - 1;
+        let (left, right) = rows.split_at_mut(half);
+        let halves = [(left, start), (right, start + half as u32)].map(Mutex::new);
+        let parts = execute::few(self.execute, 2, |k| {
+            let mut part = halves[k].lock().unwrap_or_else(PoisonError::into_inner);
+            let (rows, start) = &mut *part;
+            let mut nodes = Vec::new();
+            self.share(rows, *start, levels - 1, &mut nodes);
+            nodes
+        });
+        for (k, part) in parts.into_iter().enumerate() {
+            let shift = nodes.len() as u32;
+            if k == 1 {
+                nodes[at].right = shift;
+            }
+            nodes.extend(part.into_iter().map(|mut node| {
+                if !node.is_leaf() {
+                    node.right += shift;
+                }
+                node
+            }));
+        }
+    }
+
+    fn cut(
+        &self,
+        rows: &mut [u32],
+        start: u32,
+        nodes: &mut Vec<Node>,
+        keyed: &mut Vec<(f64, u32)>,
+    ) {
+        let at = nodes.len();
+        nodes.push(Node::of(start, rows.len()));
+        if rows.len() <= self.leaf {
+            return;
+        }
+        let half = self.halve(rows, keyed);
+        let (left, right) = rows.split_at_mut(half);
+        self.cut(left, start, nodes, keyed);
+        nodes[at].right = nodes.len() as u32;
+        self.cut(right, start + half as u32, nodes, keyed);
+    }
+
+    /// Sorts rows to either side of a plane, and returns how many come first.
+    fn halve(&self, rows: &mut [u32], keyed: &mut Vec<(f64, u32)>) -> usize {
+        let (n, count) = (self.n, rows.len());
+        let direction = widest(self.unordered, rows, n);
+        // Full leaves, but for the last.
+        let mut half = (count / 2).div_ceil(self.leaf) * self.leaf;
+        if half >= count {
+            half -= self.leaf;
+        }
+        keyed.clear();
+        keyed.extend(rows.iter().map(|&i| {
+            let lead = &self.unordered[i as usize * n..][..n.min(SPLIT_AXES)];
+            (
+                lead.iter().zip(&direction).map(|(y, d)| y * d).sum::<f64>(),
+                i,
+            )
+        }));
+        keyed.select_nth_unstable_by(half, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (row, key) in rows.iter_mut().zip(&*keyed) {
+            *row = key.1;
+        }
+        half
     }
 }
 
