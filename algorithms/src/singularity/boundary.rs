@@ -4,7 +4,7 @@ use super::envelope::Envelope;
 use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::tolerance::{Tolerance, at_least, vectors};
 use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
-use nalgebra::Vector3;
+use nalgebra::{Matrix2, Vector2, Vector3};
 use std::f64::consts::PI;
 
 /// A sheet that ends in a curve.
@@ -24,6 +24,9 @@ pub struct Boundary {
 /// Least distance of the center from the middle of the neighborhood, as a share of the radius: it is
 /// 0.42 on a straight boundary.
 const LEAST_SHIFT: f64 = 0.2;
+/// Least share of the variance across the widest direction that the half ball about the center has: it is
+/// 0.28 on a straight boundary, and 0 where the center is on a curve.
+const LEAST_BREADTH: f64 = 0.05;
 /// Points that would have to lie beyond the boundary.
 const LEAST_MISSING: f64 = 10.0;
 /// Greatest curvature of the parabola, in units of one over the radius.
@@ -81,6 +84,28 @@ impl Axes {
     }
 }
 
+/// Variance of the points within `radius` of the center in the narrowest direction of the tangent plane, as a
+/// share of that in the widest: 0 for points on a line, 1 for an even spread.
+///
+/// A ball whose rim cuts another stratum can have a spread in two dimensions without a sheet at its
+/// center; the ball half as wide shows it.
+fn breadth(points: &[Vector3<f64>], center: &Vector3<f64>, radius: f64) -> f64 {
+    let near = || {
+        let inside = move |x: &&Vector3<f64>| (*x - center).norm() < radius;
+        points.iter().filter(inside).map(|x| x.xy())
+    };
+    let count = near().count().max(1) as f64;
+    let mean = near().sum::<Vector2<f64>>() / count;
+    let spread: Matrix2<f64> = near().map(|x| (x - mean) * (x - mean).transpose()).sum();
+    let variances = spread.symmetric_eigenvalues();
+    // Where all points are in one place no direction is wider than another.
+    if variances.max() > 0.0 {
+        variances.min() / variances.max()
+    } else {
+        0.0
+    }
+}
+
 /// Area of the disc of `radius` about the origin beyond the parabola.
 fn area_beyond(envelope: &Envelope, radius: f64) -> f64 {
     let width = 2.0 * radius / STRIPS as f64;
@@ -116,6 +141,13 @@ impl SingularityModel for Boundary {
         }
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
+        let breadth = breadth(points, &center, 0.5 * local.radius);
+        if breadth < LEAST_BREADTH {
+            return Err(Rejection::EmptyStratum {
+                stratum: 1,
+                found: 0,
+            });
+        }
         let mut axes = Axes::new([center.x, center.y], [center.x, center.y]);
         let upright = |axes: &Axes| {
             let flat: Vec<[f64; 2]> = points.iter().map(|x| axes.plane(x)).collect();

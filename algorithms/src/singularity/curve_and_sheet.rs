@@ -35,6 +35,9 @@ const REACH: f64 = 0.95;
 const LEAST_SINE: f64 = 0.3;
 /// The sheet is fitted to points farther than this many ep from the curve.
 const CLEAR: f64 = 1.5;
+/// Greatest gradient of the height above the sheet, 1 where it is parallel to its plane: a steeper patch
+/// has bent to points that are on no sheet, and distances from it mean nothing.
+const STEEPEST: f64 = 2.0;
 /// Fewest points of an arc.
 const LEAST_ARC: usize = 2;
 /// A curve is at least this many ep long.
@@ -144,6 +147,10 @@ impl Fit {
                     found: near.len(),
                 });
             }
+            let steepest = |x: &Vector3<f64>| sheet.height(x).1.norm() > STEEPEST;
+            if near.iter().any(steepest) {
+                return Err(Rejection::NoRealSolution);
+            }
             if round == 0 {
                 continue;
             }
@@ -202,9 +209,10 @@ impl Fit {
             };
             if k < count {
                 sum += to_sheet.abs().min(to_curve).powi(2);
-                if matches!(*label, 1 | 2) {
-                    arcs[usize::from(*label) - 1] += 1;
-                }
+            }
+            // Of the few points of a curve the fitted ones can leave out all of an arc.
+            if matches!(*label, 1 | 2) && (x - center).norm() < local.radius {
+                arcs[usize::from(*label) - 1] += 1;
             }
         }
         let lengths = beside.iter().map(|x| curve.parameter(x));
