@@ -231,3 +231,57 @@ impl SingularityModel for Boundary {
         "boundary"
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decompose(points: &[[f64; 3]]) -> Result<Decomposition, Rejection> {
+        let count = points.len() as f64;
+        let mean = [0, 1, 2].map(|i| points.iter().map(|x| x[i]).sum::<f64>() / count);
+        let coordinates: Vec<f64> = points
+            .iter()
+            .flat_map(|x| [0, 1, 2].map(|i| x[i] - mean[i]))
+            .collect();
+        Boundary::new(0.2, 0.1).unwrap().decompose(&LocalPoints {
+            dimension: 3,
+            coordinates: &coordinates,
+            fitted: points.len(),
+            center: 0,
+            radius: 1.0,
+        })
+    }
+
+    fn spiral(count: usize, radius: f64) -> impl Iterator<Item = [f64; 2]> {
+        (0..count).map(move |k| {
+            let r = radius * ((k as f64 + 0.5) / count as f64).sqrt();
+            let angle = 2.4 * k as f64;
+            [r * angle.cos(), r * angle.sin()]
+        })
+    }
+
+    #[test]
+    fn half_a_disc_ends_at_its_center() {
+        let mut points = vec![[0.0; 3]];
+        points.extend(
+            spiral(200, 1.0)
+                .map(|[x, y]| [x, y, 0.0])
+                .filter(|x| x[0] < 0.0),
+        );
+        let fit = decompose(&points).unwrap();
+        assert_eq!(fit.dimension_of(0), 1);
+        assert!(fit.center_offset < 0.1, "{}", fit.center_offset);
+    }
+
+    #[test]
+    fn a_curve_over_a_sheet_is_no_boundary() {
+        // The ball is wide, but about its center there is only the curve.
+        for height in [0.9, 0.95, 0.98] {
+            let cap = f64::sqrt(1.0 - height * height);
+            let mut points = vec![[0.0; 3]];
+            points.extend((0..24).map(|k| [f64::from(k) / 12.0 - 0.98, 0.0, 0.0]));
+            points.extend(spiral(40, cap).map(|[x, y]| [height, x, y]));
+            assert!(decompose(&points).is_err(), "{height}");
+        }
+    }
+}

@@ -156,3 +156,28 @@ pub(super) fn nearest<const D: usize>(flats: &[Flat<D>], x: &SVector<f64, D>) ->
     }
     best.1
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn one_plane_keeps_off_what_is_off_it() {
+        // A disc, and a line across it that spreads farther than the disc.
+        let disc = (0..100).map(|k| {
+            let (r, angle) = (0.02 * f64::from(k).sqrt(), 2.4 * f64::from(k));
+            Vector3::new(r * angle.cos(), r * angle.sin(), 0.0)
+        });
+        let line = (0..40).map(|k| Vector3::new(0.0, 0.0, -0.02 * f64::from(k)));
+        let points: Vec<_> = disc.chain(line).collect();
+        let found = [Flat::normal_to(Vector3::zeros(), &[Vector3::z()])];
+        let planes = greedy(&points, &found, 1, 0.03).unwrap();
+        assert!(
+            points[..100]
+                .iter()
+                .all(|x| planes[0].squared_distance(x) < 1e-3 * 1e-3)
+        );
+        assert!(planes[0].squared_distance(&points[139]) > 0.7 * 0.7);
+    }
+}

@@ -633,3 +633,65 @@ fn without_triangles(
     }
     kept
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nodes within `reach` of each other joined.
+    fn graph(places: &[[f64; 2]], reach: f64) -> Vec<Vec<(usize, f64)>> {
+        let far = |a: usize, b: usize| squared_distance(&places[a], &places[b]).sqrt();
+        (0..places.len())
+            .map(|a| {
+                let near = (0..places.len()).filter(|&b| b != a && far(a, b) <= reach);
+                near.map(|b| (b, far(a, b))).collect()
+            })
+            .collect()
+    }
+
+    fn found(places: &[[f64; 2]]) -> Vec<[usize; 2]> {
+        let graph = graph(places, 1.0);
+        let distance = |a: usize, b: usize| squared_distance(&places[a], &places[b]).sqrt();
+        let ends: Vec<Vec<usize>> = components(&graph, places.len())
+            .iter()
+            .map(|part| free_ends(&graph, part, places.len(), distance))
+            .collect();
+        let found = bridges(&graph, &ends, |k| &places[k][..], BRIDGE, |_, _| false);
+        found.iter().map(|&(a, b, _)| [a, b]).collect()
+    }
+
+    fn circle(turns: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
+        turns
+            .map(|t| std::f64::consts::TAU * t)
+            .map(|t| [5.0 * t.cos(), 5.0 * t.sin()])
+            .collect()
+    }
+
+    #[test]
+    fn a_closed_curve_is_closed_over_a_gap_of_its_points() {
+        let steps = |k: usize| k as f64 / 100.0;
+        assert_eq!(found(&circle((0..100).map(steps))), [] as [[usize; 2]; 0]);
+        assert_eq!(found(&circle((0..97).map(steps))), [[0, 96]]);
+        assert_eq!(found(&circle((0..92).map(steps))), [] as [[usize; 2]; 0]);
+        let two_gaps: Vec<_> = circle((0..97).filter(|k| !(40..43).contains(k)).map(steps));
+        assert_eq!(found(&two_gaps), [[39, 40], [0, 93]]);
+    }
+
+    #[test]
+    fn ends_side_by_side_are_not_joined() {
+        let side = |y: f64| (0..20).map(move |k| [0.25 * f64::from(k), y]);
+        let places: Vec<_> = side(0.0).chain(side(1.4)).collect();
+        assert_eq!(found(&places), [] as [[usize; 2]; 0]);
+    }
+
+    #[test]
+    fn a_bare_curve_ends_on_both_sides() {
+        let places: Vec<_> = (0..20).map(|k| [0.25 * f64::from(k), 0.0]).collect();
+        let graph = graph(&places, 2.0);
+        let part: Vec<usize> = (0..20).collect();
+        let distance = |a: usize, b: usize| squared_distance(&places[a], &places[b]).sqrt();
+        let mut ends = free_ends(&graph, &part, 20, distance);
+        ends.sort_unstable();
+        assert_eq!(ends, [0, 19]);
+    }
+}
