@@ -448,11 +448,13 @@ pub(super) fn more_references<S: Scalar>(
 /// The connected parts of a graph without its corners, each in order of its nodes.
 fn components(graph: &[Vec<(usize, f64)>], first_corner: usize) -> Vec<Vec<usize>> {
     let mut seen = vec![false; first_corner];
-    (0..first_corner)
-        .filter_map(|start| {
-            (!seen[start]).then(|| component(graph, start, first_corner, &mut seen))
-        })
-        .collect()
+    let mut parts = Vec::new();
+    for start in 0..first_corner {
+        if !seen[start] {
+            parts.push(component(graph, start, first_corner, &mut seen));
+        }
+    }
+    parts
 }
 
 /// The ends of a part of a curve that stop at nothing: no corner is joined to them, and all that is near
