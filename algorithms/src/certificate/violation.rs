@@ -212,7 +212,11 @@ impl ViolationKind {
             UncoveredPoints => {
                 "increase the triangulation radius, or remove outliers from the points"
             }
-            MeshFarFromPoints | MeshOffPoints => {
+            MeshFarFromPoints => {
+                "decrease the triangulation radius or dl: triangles bridge empty space; \
+                 increase dl where a curve without triangles has a hole in its points"
+            }
+            MeshOffPoints => {
                 "decrease the triangulation radius or dl: triangles bridge empty space"
             }
             UnusedLandmarks => "increase the triangulation radius, or decrease the noise",

@@ -4,7 +4,7 @@ use super::envelope::Envelope;
 use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::tolerance::{Tolerance, at_least, vectors};
 use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
-use nalgebra::Vector3;
+use nalgebra::{Matrix2, Vector2, Vector3};
 use std::f64::consts::PI;
 
 /// A sheet that ends in a curve.
@@ -24,6 +24,9 @@ pub struct Boundary {
 /// Least distance of the center from the middle of the neighborhood, as a share of the radius: it is
 /// 0.42 on a straight boundary.
 const LEAST_SHIFT: f64 = 0.2;
+/// Least share of the variance across the widest direction that the half ball about the center has: it is
+/// 0.28 on a straight boundary, and 0 where the center is on a curve.
+const LEAST_BREADTH: f64 = 0.05;
 /// Points that would have to lie beyond the boundary.
 const LEAST_MISSING: f64 = 10.0;
 /// Greatest curvature of the parabola, in units of one over the radius.
@@ -81,6 +84,28 @@ impl Axes {
     }
 }
 
+/// Variance of the points within `radius` of the center in the narrowest direction of the tangent plane, as a
+/// share of that in the widest: 0 for points on a line, 1 for an even spread.
+///
+/// A ball whose rim cuts another stratum can have a spread in two dimensions without a sheet at its
+/// center; the ball half as wide shows it.
+fn breadth(points: &[Vector3<f64>], center: &Vector3<f64>, radius: f64) -> f64 {
+    let near = || {
+        let inside = move |x: &&Vector3<f64>| (*x - center).norm() < radius;
+        points.iter().filter(inside).map(|x| x.xy())
+    };
+    let count = near().count().max(1) as f64;
+    let mean = near().sum::<Vector2<f64>>() / count;
+    let spread: Matrix2<f64> = near().map(|x| (x - mean) * (x - mean).transpose()).sum();
+    let variances = spread.symmetric_eigenvalues();
+    // Where all points are in one place no direction is wider than another.
+    if variances.max() > 0.0 {
+        variances.min() / variances.max()
+    } else {
+        0.0
+    }
+}
+
 /// Area of the disc of `radius` about the origin beyond the parabola.
 fn area_beyond(envelope: &Envelope, radius: f64) -> f64 {
     let width = 2.0 * radius / STRIPS as f64;
@@ -116,6 +141,13 @@ impl SingularityModel for Boundary {
         }
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
+        let breadth = breadth(points, &center, 0.5 * local.radius);
+        if breadth < LEAST_BREADTH {
+            return Err(Rejection::EmptyStratum {
+                stratum: 1,
+                found: 0,
+            });
+        }
         let mut axes = Axes::new([center.x, center.y], [center.x, center.y]);
         let upright = |axes: &Axes| {
             let flat: Vec<[f64; 2]> = points.iter().map(|x| axes.plane(x)).collect();
@@ -197,5 +229,59 @@ impl SingularityModel for Boundary {
 
     fn name(&self) -> &str {
         "boundary"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decompose(points: &[[f64; 3]]) -> Result<Decomposition, Rejection> {
+        let count = points.len() as f64;
+        let mean = [0, 1, 2].map(|i| points.iter().map(|x| x[i]).sum::<f64>() / count);
+        let coordinates: Vec<f64> = points
+            .iter()
+            .flat_map(|x| [0, 1, 2].map(|i| x[i] - mean[i]))
+            .collect();
+        Boundary::new(0.2, 0.1).unwrap().decompose(&LocalPoints {
+            dimension: 3,
+            coordinates: &coordinates,
+            fitted: points.len(),
+            center: 0,
+            radius: 1.0,
+        })
+    }
+
+    fn spiral(count: usize, radius: f64) -> impl Iterator<Item = [f64; 2]> {
+        (0..count).map(move |k| {
+            let r = radius * ((k as f64 + 0.5) / count as f64).sqrt();
+            let angle = 2.4 * k as f64;
+            [r * angle.cos(), r * angle.sin()]
+        })
+    }
+
+    #[test]
+    fn half_a_disc_ends_at_its_center() {
+        let mut points = vec![[0.0; 3]];
+        points.extend(
+            spiral(200, 1.0)
+                .map(|[x, y]| [x, y, 0.0])
+                .filter(|x| x[0] < 0.0),
+        );
+        let fit = decompose(&points).unwrap();
+        assert_eq!(fit.dimension_of(0), 1);
+        assert!(fit.center_offset < 0.1, "{}", fit.center_offset);
+    }
+
+    #[test]
+    fn a_curve_over_a_sheet_is_no_boundary() {
+        // The ball is wide, but about its center there is only the curve.
+        for height in [0.9, 0.95, 0.98] {
+            let cap = f64::sqrt(1.0 - height * height);
+            let mut points = vec![[0.0; 3]];
+            points.extend((0..24).map(|k| [f64::from(k) / 12.0 - 0.98, 0.0, 0.0]));
+            points.extend(spiral(40, cap).map(|[x, y]| [height, x, y]));
+            assert!(decompose(&points).is_err(), "{height}");
+        }
     }
 }

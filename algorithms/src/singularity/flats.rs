@@ -96,7 +96,7 @@ pub(super) fn candidates<const D: usize>(
 }
 
 /// `count` planes: each is the candidate that most of the points left over lie near, fitted to them;
-/// then all are fitted to the points nearest to each. `None` when there are not so many.
+/// then all are fitted to the points nearest to each, where they are several. `None` when there are not so many.
 ///
 /// O(p c) distances a plane for p points and c candidates.
 pub(super) fn greedy<const D: usize>(
@@ -133,7 +133,9 @@ pub(super) fn greedy<const D: usize>(
         left.retain(|x| flat.squared_distance(x) >= limit);
         flats.push(flat);
     }
-    for _ in 0..ROUNDS {
+    // One plane alone must not take in what lies off it.
+    let rounds = if count > 1 { ROUNDS } else { 0 };
+    for _ in 0..rounds {
         let owner: Vec<usize> = points.iter().map(|x| nearest(&flats, x)).collect();
         for (k, flat) in flats.iter_mut().enumerate() {
             let own = points.iter().zip(&owner).filter(|&(_, &o)| o == k);
@@ -153,4 +155,29 @@ pub(super) fn nearest<const D: usize>(flats: &[Flat<D>], x: &SVector<f64, D>) ->
         }
     }
     best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn one_plane_keeps_off_what_is_off_it() {
+        // A disc, and a line across it that spreads farther than the disc.
+        let disc = (0..100).map(|k| {
+            let (r, angle) = (0.02 * f64::from(k).sqrt(), 2.4 * f64::from(k));
+            Vector3::new(r * angle.cos(), r * angle.sin(), 0.0)
+        });
+        let line = (0..40).map(|k| Vector3::new(0.0, 0.0, -0.02 * f64::from(k)));
+        let points: Vec<_> = disc.chain(line).collect();
+        let found = [Flat::normal_to(Vector3::zeros(), &[Vector3::z()])];
+        let planes = greedy(&points, &found, 1, 0.03).unwrap();
+        assert!(
+            points[..100]
+                .iter()
+                .all(|x| planes[0].squared_distance(x) < 1e-3 * 1e-3)
+        );
+        assert!(planes[0].squared_distance(&points[139]) > 0.7 * 0.7);
+    }
 }

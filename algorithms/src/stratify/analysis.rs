@@ -225,6 +225,9 @@ const UNEXPLAINED_SHARE: f64 = 0.05;
 /// A curve is looked for this close to its points where the dimension does not show it, as a share
 /// of the radius.
 const BESIDE: f64 = 0.5;
+/// Share of the radius of the ball that is asked what its center is on, when the whole one is explained by
+/// no model of a curve.
+const HALF: f64 = 0.5;
 /// A point farther than this share of the radius from a curve says nothing about it.
 const WITNESS_REACH: f64 = 0.4;
 /// A point farther than this share of the radius from a 0-stratum does not stand for it.
@@ -508,6 +511,11 @@ impl<S: Scalar> Analyzer<'_, S> {
         Ok((neighbors, dimension, verdict.map(Box::new)))
     }
 
+    /// Whether a model knows of curves that no surface touches.
+    fn knows_bare_curves(&self) -> bool {
+        self.models.iter().any(|m| m.applies_to(1))
+    }
+
     /// What models say that ask for 2-dimensional neighborhoods.
     fn second_thought(
         &self,
@@ -540,6 +548,19 @@ impl<S: Scalar> Analyzer<'_, S> {
                 }
             }
         }
+        if best.is_none() && self.knows_bare_curves() {
+            // Where the rim of the ball cuts another stratum, the half ball shows the own one.
+            let half = S::of(HALF * eps);
+            let near = scratch.near[..view.fitted].iter();
+            let rows = near.filter(|x| x.distance < half).map(|x| x.index);
+            if PrincipalFrame::of(self.cloud, rows).dimension(options.dt) == 1 {
+                let (verdict, _) = self.explain(i, &[], 1, options, scratch);
+                return match &verdict.kind {
+                    Kind::Singular(w) if w.cells == 0 => verdict,
+                    _ => Verdict::REGULAR,
+                };
+            }
+        }
         best.map_or(Verdict::REGULAR, |(_, m, fit)| {
             let local = self.local(&view, self.models[m].as_ref(), scratch);
             let located = fit.located(view.center);
@@ -566,7 +587,10 @@ impl<S: Scalar> Analyzer<'_, S> {
             let Some(view) = self.view(i, radius, radius, scratch) else {
                 break;
             };
-            scratch.near.truncate(view.fitted);
+            if !self.knows_bare_curves() {
+                scratch.near.truncate(view.fitted);
+            }
+            let first = scratch.near.len();
             scratch.near.extend(others.iter().map(|&index| Neighbor {
                 index,
                 distance: S::zero(),
@@ -584,7 +608,7 @@ impl<S: Scalar> Analyzer<'_, S> {
                 Err(_) if dimension == 1 => f64::INFINITY,
                 Err(_) => break,
             };
-            let rows: Vec<usize> = (view.fitted..scratch.near.len()).collect();
+            let rows: Vec<usize> = (first..scratch.near.len()).collect();
             let mut best: Option<(f64, usize, Decomposition, Vec<Option<Located>>)> = None;
             for (m, model) in self.models.iter().enumerate() {
                 if !model.applies_to(dimension) || model.finds_boundary() {

@@ -28,6 +28,9 @@ pub(super) const NODE_SPACING: f64 = 0.125;
 const REACH: f64 = 1.0;
 /// The same where no surface is near that could carry another curve.
 const BARE_REACH: f64 = 2.0;
+/// Two ends of curves that point at each other are joined over a gap of at most this many dl between
+/// their points, before landmarks are laid.
+const BRIDGE: f64 = 2.0;
 /// A chain that stops at nothing has a landmark at its end; the next one is this share of dl away.
 const END_SEPARATION: f64 = 0.6;
 /// A chain is joined to a corner, or two free ends to each other, over at most this many dl.
@@ -143,6 +146,11 @@ impl Curves {
                 .iter()
                 .map(|&r| analysis.offsets[r])
                 .fold(0.0, f64::max);
+        let parted = |k: usize, other: usize| {
+            matches!((labels[k], labels[other]), (Some(a), Some(b)) if a.0 == b.0 && a.1 != b.1)
+                || kind == Role::Curve
+                    && (analysis.cells[rows[k]] == 0) != (analysis.cells[rows[other]] == 0)
+        };
         for (k, &row) in rows.iter().enumerate() {
             let reach = if kind == Role::Curve && analysis.cells[row] == 0 {
                 BARE_REACH * dl
@@ -156,24 +164,16 @@ impl Curves {
                     continue;
                 }
                 let d = distance(row, x.index);
-                let parted = matches!((labels[k], labels[other]), (Some(a), Some(b)) if a.0 == b.0 && a.1 != b.1)
-                    || kind == Role::Curve
-                        && (analysis.cells[row] == 0) != (analysis.cells[x.index] == 0);
-                if d <= reach && !parted {
+                if d <= reach && !parted(k, other) {
                     graph[k].push((other, d));
                 }
             }
         }
         let first_corner = rows.len();
+        let mut parts = components(&graph, first_corner);
         let mut part = vec![usize::MAX; rows.len()];
-        let mut parts = Vec::new();
-        let mut seen = vec![false; rows.len()];
-        for start in 0..rows.len() {
-            if !seen[start] {
-                let members = component(&graph, start, first_corner, &mut seen);
-                members.iter().for_each(|&k| part[k] = parts.len());
-                parts.push(members);
-            }
+        for (p, members) in parts.iter().enumerate() {
+            members.iter().for_each(|&k| part[k] = p);
         }
         // Corners are nodes behind the others, each joined to the nearest node of every branch. A
         // part of a curve that does not reach farther than dl from the corner is none: it has no room for
@@ -213,6 +213,26 @@ impl Curves {
                 graph[k].push((first_corner + c, d));
             }
         }
+        let bare = |k: usize| kind == Role::Curve && analysis.cells[rows[k]] == 0;
+        // What is next to a bare curve says where it ends, and its points are joined over as much anyway.
+        let ends: Vec<Vec<usize>> = parts
+            .iter()
+            .filter(|members| members.iter().all(|&k| !bare(k)))
+            .map(|members| {
+                free_ends(&graph, members, first_corner, |a, b| {
+                    distance(rows[a], rows[b])
+                })
+            })
+            .collect();
+        let place = |k: usize| places.point(rows[k]);
+        let bridges = bridges(&graph, &ends, place, BRIDGE * dl, parted);
+        for &(a, b, d) in &bridges {
+            graph[a].push((b, d));
+            graph[b].push((a, d));
+        }
+        if !bridges.is_empty() {
+            parts = components(&graph, first_corner);
+        }
         for members in &parts {
             self.lay_component(analysis, dl, kind, &rows, &graph, members, first_corner);
         }
@@ -248,24 +268,15 @@ impl Curves {
         });
         let (order, _) = sweep(graph, &[start], inside);
         let before = self.rows.len();
-        // Where a bare curve ends: all that is near the last point is on one side of it.
-        let free_end = order.last().map(|&(k, _)| k).filter(|&end| {
-            let around: Vec<usize> = graph[end]
-                .iter()
-                .map(|&(k, _)| k)
-                .filter(|&k| k < first_corner)
-                .collect();
-            let far = around
-                .iter()
-                .map(|&k| distance(rows[k], rows[end]))
-                .fold(0.0, f64::max);
-            end < first_corner
-                && component.iter().all(|&k| analysis.cells[rows[k]] == 0)
-                && kind == Role::Curve
-                && around
-                    .iter()
-                    .all(|&a| around.iter().all(|&b| distance(rows[a], rows[b]) <= far))
-        });
+        // Where a bare curve ends it has a landmark.
+        let bare = kind == Role::Curve && component.iter().all(|&k| analysis.cells[rows[k]] == 0);
+        let ends: Vec<usize> = if bare {
+            free_ends(graph, component, first_corner, |a, b| {
+                distance(rows[a], rows[b])
+            })
+        } else {
+            Vec::new()
+        };
         let mut best: Option<Laid> = None;
         for stretch in 0..STRETCHES {
             let separation = dl * (1.0 + STRETCH_STEP * stretch as f64);
@@ -281,12 +292,10 @@ impl Curves {
                     chosen.push(k);
                 }
             }
-            if let Some(end) = free_end {
-                if let Some(&last) = chosen.last().filter(|&&c| {
-                    c != end && distance(rows[c], rows[end]) < END_SEPARATION * separation
-                }) {
-                    chosen.retain(|&c| c != last);
-                }
+            for &end in &ends {
+                chosen.retain(|&c| {
+                    ends.contains(&c) || distance(rows[c], rows[end]) >= END_SEPARATION * separation
+                });
                 if !chosen.contains(&end) {
                     chosen.push(end);
                 }
@@ -436,6 +445,92 @@ pub(super) fn more_references<S: Scalar>(
     references(analyzer, analysis, &rows)
 }
 
+/// The connected parts of a graph without its corners, each in order of its nodes.
+fn components(graph: &[Vec<(usize, f64)>], first_corner: usize) -> Vec<Vec<usize>> {
+    let mut seen = vec![false; first_corner];
+    let mut parts = Vec::new();
+    for start in 0..first_corner {
+        if !seen[start] {
+            parts.push(component(graph, start, first_corner, &mut seen));
+        }
+    }
+    parts
+}
+
+/// The ends of a part of a curve that stop at nothing: no corner is joined to them, and all that is near
+/// them is on one side. None on a closed curve; a single node is one end.
+fn free_ends(
+    graph: &[Vec<(usize, f64)>],
+    part: &[usize],
+    first_corner: usize,
+    distance: impl Fn(usize, usize) -> f64,
+) -> Vec<usize> {
+    let inside = |k: usize| part.binary_search(&k).is_ok();
+    let farthest = |from: usize| sweep(graph, &[from], inside).0.last().map_or(from, |x| x.0);
+    let one = farthest(part[0]);
+    let other = farthest(one);
+    let mut ends = vec![one, other];
+    ends.dedup();
+    ends.retain(|&end| {
+        let around = &graph[end];
+        let far = around.iter().map(|x| x.1).fold(0.0, f64::max);
+        around.iter().all(|&(k, _)| k < first_corner)
+            && around
+                .iter()
+                .enumerate()
+                .all(|(x, &(a, _))| around[..x].iter().all(|&(b, _)| distance(a, b) <= far))
+    });
+    ends
+}
+
+/// Pairs of free ends that go on where the other stops, at most `limit` apart, nearest first and each end
+/// once: where the points of a curve have a gap. A part of a single node takes two.
+fn bridges<'p>(
+    graph: &[Vec<(usize, f64)>],
+    ends: &[Vec<usize>],
+    place: impl Fn(usize) -> &'p [f64],
+    limit: f64,
+    parted: impl Fn(usize, usize) -> bool,
+) -> Vec<(usize, usize, f64)> {
+    // Whether `to` is ahead of the end of a curve.
+    let ahead = |end: usize, to: usize| {
+        let back = graph[end].iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        back.is_none_or(|&(back, _)| {
+            let [p, q, r] = [back, end, to].map(&place);
+            (0..p.len())
+                .map(|i| (q[i] - p[i]) * (r[i] - q[i]))
+                .sum::<f64>()
+                > 0.0
+        })
+    };
+    let mut free: Vec<usize> = ends.iter().flatten().copied().collect();
+    free.sort_unstable();
+    let mut pairs = Vec::new();
+    for (x, &a) in free.iter().enumerate() {
+        for &b in &free[..x] {
+            let d = squared_distance(place(a), place(b)).sqrt();
+            let joined = graph[a].iter().any(|&(k, _)| k == b);
+            if d <= limit && !joined && !parted(a, b) && ahead(a, b) && ahead(b, a) {
+                pairs.push((d, b, a));
+            }
+        }
+    }
+    pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+    let mut slots: Vec<usize> = free
+        .iter()
+        .map(|&k| if graph[k].is_empty() { 2 } else { 1 })
+        .collect();
+    let mut out = Vec::new();
+    for (d, a, b) in pairs {
+        let at = [a, b].map(|k| free.binary_search(&k).unwrap_or(0));
+        if at.iter().all(|&i| slots[i] > 0) {
+            at.iter().for_each(|&i| slots[i] -= 1);
+            out.push((a, b, d));
+        }
+    }
+    out
+}
+
 fn component(
     graph: &[Vec<(usize, f64)>],
     start: usize,
@@ -539,4 +634,66 @@ fn without_triangles(
         }
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nodes within `reach` of each other joined.
+    fn graph(places: &[[f64; 2]], reach: f64) -> Vec<Vec<(usize, f64)>> {
+        let far = |a: usize, b: usize| squared_distance(&places[a], &places[b]).sqrt();
+        (0..places.len())
+            .map(|a| {
+                let near = (0..places.len()).filter(|&b| b != a && far(a, b) <= reach);
+                near.map(|b| (b, far(a, b))).collect()
+            })
+            .collect()
+    }
+
+    fn found(places: &[[f64; 2]]) -> Vec<[usize; 2]> {
+        let graph = graph(places, 1.0);
+        let distance = |a: usize, b: usize| squared_distance(&places[a], &places[b]).sqrt();
+        let ends: Vec<Vec<usize>> = components(&graph, places.len())
+            .iter()
+            .map(|part| free_ends(&graph, part, places.len(), distance))
+            .collect();
+        let found = bridges(&graph, &ends, |k| &places[k][..], BRIDGE, |_, _| false);
+        found.iter().map(|&(a, b, _)| [a, b]).collect()
+    }
+
+    fn circle(turns: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
+        turns
+            .map(|t| std::f64::consts::TAU * t)
+            .map(|t| [5.0 * t.cos(), 5.0 * t.sin()])
+            .collect()
+    }
+
+    #[test]
+    fn a_closed_curve_is_closed_over_a_gap_of_its_points() {
+        let steps = |k: usize| k as f64 / 100.0;
+        assert_eq!(found(&circle((0..100).map(steps))), [] as [[usize; 2]; 0]);
+        assert_eq!(found(&circle((0..97).map(steps))), [[0, 96]]);
+        assert_eq!(found(&circle((0..92).map(steps))), [] as [[usize; 2]; 0]);
+        let two_gaps: Vec<_> = circle((0..97).filter(|k| !(40..43).contains(k)).map(steps));
+        assert_eq!(found(&two_gaps), [[39, 40], [0, 93]]);
+    }
+
+    #[test]
+    fn ends_side_by_side_are_not_joined() {
+        let side = |y: f64| (0..20).map(move |k| [0.25 * f64::from(k), y]);
+        let places: Vec<_> = side(0.0).chain(side(1.4)).collect();
+        assert_eq!(found(&places), [] as [[usize; 2]; 0]);
+    }
+
+    #[test]
+    fn a_bare_curve_ends_on_both_sides() {
+        let places: Vec<_> = (0..20).map(|k| [0.25 * f64::from(k), 0.0]).collect();
+        let graph = graph(&places, 2.0);
+        let part: Vec<usize> = (0..20).collect();
+        let distance = |a: usize, b: usize| squared_distance(&places[a], &places[b]).sqrt();
+        let mut ends = free_ends(&graph, &part, 20, distance);
+        ends.sort_unstable();
+        assert_eq!(ends, [0, 19]);
+    }
 }
