@@ -96,7 +96,7 @@ pub(super) fn candidates<const D: usize>(
 }
 
 /// `count` planes: each is the candidate that most of the points left over lie near, fitted to them;
-/// then all are fitted to the points nearest to each. `None` when there are not so many.
+/// then several are fitted to the points nearest to each. `None` when there are not so many.
 ///
 /// O(p c) distances a plane for p points and c candidates.
 pub(super) fn greedy<const D: usize>(
@@ -133,7 +133,9 @@ pub(super) fn greedy<const D: usize>(
         left.retain(|x| flat.squared_distance(x) >= limit);
         flats.push(flat);
     }
-    for _ in 0..ROUNDS {
+    // One plane alone would be fitted to all points, those included that it was chosen to leave out.
+    let rounds = if count > 1 { ROUNDS } else { 0 };
+    for _ in 0..rounds {
         let owner: Vec<usize> = points.iter().map(|x| nearest(&flats, x)).collect();
         for (k, flat) in flats.iter_mut().enumerate() {
             let own = points.iter().zip(&owner).filter(|&(_, &o)| o == k);
