@@ -6,6 +6,7 @@ use crosscap::prelude::*;
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::homology::{homology, local_homology};
 use crosscap_algorithms::pieces::{Pieces, Sidedness};
+use crosscap_algorithms::singularity::ModelName;
 
 fn reconstruct(name: &str, count: usize, eps: f64, dl: f64) -> Outcome {
     let surface = SampleSurface::find(name).unwrap();
@@ -15,6 +16,9 @@ fn reconstruct(name: &str, count: usize, eps: f64, dl: f64) -> Outcome {
     let mut parameters = Parameters::new(eps, dl);
     if surface.truth().double_curves == 0 {
         parameters = parameters.surface();
+    }
+    if surface.truth().triple_points > 0 {
+        parameters.models = vec![ModelName::TwoPlanes, ModelName::TriplePoint];
     }
     parameters.boundary = sample.boundary;
     let outcome = Pipeline::new(parameters).unwrap();
@@ -57,11 +61,30 @@ fn surfaces_with_a_boundary() {
         ("square", 4_000, 0.4, 0.15, "One disc."),
         ("annulus", 5_000, 0.3, 0.1, "One annulus."),
         ("cylinder", 5_000, 0.4, 0.2, "One annulus."),
+        // The windings are 0.63 apart.
+        ("swiss_roll", 8_000, 0.3, 0.12, "One disc."),
     ] {
         let outcome = reconstruct(name, count, eps, dl);
         assert_eq!(pieces(&outcome).to_string(), said, "{name}");
         assert_eq!(not_contractible(&outcome, eps), (0, 0), "{name}");
     }
+}
+
+#[test]
+fn boys_surface_is_a_projective_plane() {
+    let outcome = reconstruct("boy_surface", 40_000, 0.15, 0.08);
+    let text = pieces(&outcome).to_string();
+    let said = "One projective plane. The projective plane crosses itself in one circle, covered twice by one one-sided \
+                circle (crossing angle";
+    assert!(text.starts_with(said), "{text}");
+    assert!(text.ends_with("There is one triple point."), "{text}");
+    let [curve] = &pieces(&outcome).curves[..] else {
+        panic!("{text}");
+    };
+    // Three loops through the triple point in space, one circle that runs twice on the projective plane.
+    assert_eq!(curve.preimages.len(), 1);
+    assert_eq!(curve.preimages[0].sidedness, Some(Sidedness::OneSided));
+    assert_eq!(not_contractible(&outcome, 0.16).0, 0);
 }
 
 #[test]

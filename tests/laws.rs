@@ -10,7 +10,8 @@ use crosscap_algorithms::landmarks::{MaxMin, RandomGreedy};
 use crosscap_algorithms::metric::{BruteForceOracle, Euclidean, GivenDistances, Lifted};
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::{
-    Boundary, CurveThroughSheet, IsolatedCrossing, OneSheet, TriplePoint, TwoPlanes, YJunction,
+    BareCurve, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, OneSheet, TriplePoint,
+    TwoPlanes, YJunction,
 };
 use crosscap_algorithms::triangulate::{LargestAngle, MinimumCircumradius};
 use crosscap_backends::euclidean::EuclideanOracle;
@@ -205,6 +206,23 @@ fn curve_through_sheet() {
         ..exact_to(1e-6, &instances::line_through_plane)
     };
     laws::model(&settings(), &model, &instances).unwrap();
+}
+
+#[test]
+fn curve_on_sheet() {
+    let model = CurveOnSheet::new(0.1, 0.05).unwrap();
+    let instances = Instances {
+        // A fifth of them are on the line, and two thirds of those in the neighborhood.
+        points: 150..=400,
+        ..exact_to(1e-6, &instances::line_on_plane)
+    };
+    laws::model(&settings(), &model, &instances).unwrap();
+}
+
+#[test]
+fn bare_curve() {
+    let model = BareCurve::new(0.1, 0.05).unwrap();
+    laws::model(&settings(), &model, &exact_to(1e-6, &instances::curve)).unwrap();
 }
 
 #[test]

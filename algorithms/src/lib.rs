@@ -16,6 +16,7 @@ pub mod laws;
 pub mod metric;
 pub mod moments;
 pub mod neighborhood;
+mod orthogonal;
 pub mod pieces;
 pub mod predicate;
 pub mod principal;

@@ -175,7 +175,7 @@ impl Compare {
             write_bytes_whole(path, text.as_bytes())?;
         }
         let mut lines: Vec<String> = (lanes.iter())
-            .map(|lane| format!("{} works at eps {}", lane.name, lane.told()))
+            .map(|lane| format!("{} works {}", lane.name, lane.told()))
             .collect();
         let runs = counted(table.runs.len(), "run");
         lines.extend(
@@ -330,7 +330,7 @@ impl Table {
         // Writing to a string cannot fail.
         for lane in lanes {
             let (name, told) = (escaped(&lane.name), lane.told());
-            let _ = writeln!(out, "<li><b>{name}</b> works at eps {told}</li>");
+            let _ = writeln!(out, "<li><b>{name}</b> works {told}</li>");
         }
         let _ = writeln!(
             out,

@@ -48,7 +48,7 @@ impl Lane<'_> {
         intervals(&radii, &works)
     }
 
-    /// The same in words.
+    /// The same in words, behind "works".
     pub fn told(&self) -> String {
         let parts: Vec<String> = (self.intervals().iter())
             .map(|[a, b]| {
@@ -60,9 +60,9 @@ impl Lane<'_> {
             })
             .collect();
         if parts.is_empty() {
-            "nowhere".into()
+            "at no eps that was tried".into()
         } else {
-            parts.join(", ")
+            format!("at eps {}", parts.join(", "))
         }
     }
 }

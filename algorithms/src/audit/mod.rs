@@ -2,7 +2,8 @@
 //!
 //! The law kit tries a plug-in on drawn inputs before it is used; these checks see what it returns on
 //! the data at hand. Each is cheap beside the call that it follows: what costs little is checked
-//! whole, the rest at places spread over the data.
+//! whole, the rest at places spread over the data. All of it together is within 1.5 % of the time of a run (measured; the
+//! chapter on laws has the table).
 //!
 //! | plug-in | checked | where |
 //! | --- | --- | --- |

@@ -1,5 +1,6 @@
 //! Classical multidimensional scaling.
 
+use crate::orthogonal::unit_across;
 use crosscap_core::{Chart, Error, LocalChart};
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -161,25 +162,8 @@ fn leading(gram: &DMatrix<f64>, wanted: usize) -> Option<Pairs> {
 fn orthonormalize(basis: &mut DMatrix<f64>) -> usize {
     let (rows, columns) = basis.shape();
     let data = basis.as_mut_slice();
-    for k in 0..columns {
-        let (done, rest) = data.split_at_mut(k * rows);
-        let own = &mut rest[..rows];
-        let before: f64 = own.iter().map(|x| x * x).sum();
-        for _ in 0..2 {
-            for other in done.chunks_exact(rows) {
-                let along: f64 = other.iter().zip(&*own).map(|(a, b)| a * b).sum();
-                own.iter_mut().zip(other).for_each(|(x, o)| *x -= along * o);
-            }
-        }
-        let square: f64 = own.iter().map(|x| x * x).sum();
-        let left = square > 1e-24 * before;
-        if !left {
-            return k;
-        }
-        let inverse = 1.0 / square.sqrt();
-        own.iter_mut().for_each(|x| *x *= inverse);
-    }
-    columns
+    let dependent = (0..columns).find(|&k| !unit_across(data, rows, k, 2, 1e-24));
+    dependent.unwrap_or(columns)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::decision::decide;
 use super::global::{GlobalDimension, GlobalEstimator, Scale, WholeCloud, median};
-use super::jackknife::{GROUPS, standard_error};
+use super::jackknife::error_by_ranks;
 use super::pairs::Pairs;
 use crate::execute;
 use crosscap_core::{DimensionEstimate, DimensionEstimator, Error, Neighborhood, Scalar};
@@ -92,11 +92,8 @@ impl<S: Scalar> DimensionEstimator for CorrelationDimension<S> {
                 parameter: "eps",
             });
         }
-        let mut without = [0.0; GROUPS];
-        for (g, v) in without.iter_mut().enumerate() {
-            *v = slope(&pairs, |a| a % GROUPS != g, &mut lengths).0;
-        }
-        Ok(decide(value, standard_error(&without), most))
+        let error = error_by_ranks(|kept| slope(&pairs, kept, &mut lengths).0);
+        Ok(decide(value, error, most))
     }
 
     fn name(&self) -> &str {

@@ -3,7 +3,7 @@
 use super::correlation::neighbor_medians;
 use super::decision::decide;
 use super::global::{GlobalDimension, GlobalEstimator, Scale, WholeCloud};
-use super::jackknife::{GROUPS, standard_error};
+use super::jackknife::{Draws, GROUPS, error_by_ranks, standard_error};
 use super::pairs::Pairs;
 use crate::execute;
 use crate::surfaces::Random;
@@ -88,12 +88,7 @@ impl<S: Scalar> DimensionEstimator for PackingNumbers<S> {
             let sizes = SHARES.map(|s| log_size(&pairs, &orders, s * pairs.reach, kept));
             (sizes[0] - sizes[1]) / (span[0] - span[1])
         };
-        let value = slope(&|_| true);
-        let mut without = [0.0; GROUPS];
-        for (g, v) in without.iter_mut().enumerate() {
-            *v = slope(&|a| a % GROUPS != g);
-        }
-        Ok(decide(value, standard_error(&without), most))
+        Ok(decide(slope(&|_| true), error_by_ranks(slope), most))
     }
 
     fn name(&self) -> &str {
@@ -116,32 +111,17 @@ impl<S: Scalar> GlobalEstimator<S> for PackingNumbers<S> {
             });
         }
         let count = space.len();
-        let orders: Vec<Vec<usize>> = (0..GLOBAL_ORDERS)
-            .map(|k| Random::stream(SEED, k as u64).permutation(count))
-            .collect();
-        let mut group = vec![0; count];
-        for (rank, &i) in orders[0].iter().enumerate() {
-            group[i] = rank % GROUPS;
-        }
-        // The last g leaves nothing out.
-        let drawn = |g: usize| {
-            if g < GROUPS {
-                GROUP_ORDERS
-            } else {
-                GLOBAL_ORDERS
-            }
-        };
+        let draws = Draws::new(SEED, count, GLOBAL_ORDERS, GROUP_ORDERS);
         let jobs: Vec<(usize, usize)> = (0..=GROUPS)
-            .flat_map(|g| (0..drawn(g)).map(move |k| (g, k)))
+            .flat_map(|g| (0..draws.of(g)).map(move |k| (g, k)))
             .collect();
         let sizes = execute::few(space.execute, 2 * jobs.len(), |job| {
             let ((g, order), radius) = (jobs[job / 2], job % 2);
-            let order = &orders[order];
             let separation = S::of([small, large][radius]);
             let mut covered = vec![false; count];
             let mut near = Vec::new();
             let mut size = 0usize;
-            for &i in order.iter().filter(|&&i| group[i] != g) {
+            for i in draws.points(g, order) {
                 if !covered[i] {
                     size += 1;
                     space.oracle.within(i, separation, &mut near);
@@ -153,7 +133,7 @@ impl<S: Scalar> GlobalEstimator<S> for PackingNumbers<S> {
         let span = (large / small).ln();
         let mut slopes = [0.0; GROUPS + 1];
         for (&(g, _), pair) in jobs.iter().zip(sizes.chunks_exact(2)) {
-            slopes[g] += (pair[0] - pair[1]) / span / drawn(g) as f64;
+            slopes[g] += (pair[0] - pair[1]) / span / draws.of(g) as f64;
         }
         let (without, all) = slopes.split_at(GROUPS);
         let error = standard_error(without);

@@ -3,7 +3,7 @@
 use super::decision::decide;
 use super::geodesic_tree::NeighborGraph;
 use super::global::{GlobalDimension, GlobalEstimator, WholeCloud};
-use super::jackknife::{GROUPS, standard_error};
+use super::jackknife::{Draws, GROUPS, error_by_ranks, standard_error};
 use super::pairs::Pairs;
 use crate::execute;
 use crate::surfaces::Random;
@@ -129,15 +129,12 @@ impl<S: Scalar> DimensionEstimator for SpanningTree<S> {
             dimension_of(&points, most)
         };
         let all = value(&|_| true);
-        let mut without = [0.0; GROUPS];
-        for (g, v) in without.iter_mut().enumerate() {
-            *v = value(&|a| a % GROUPS != g);
-        }
+        let error = error_by_ranks(value);
         if flat {
             // A tree of length 0: a good part of the points are copies of one.
             return Ok(decide(0.0, 0.0, most));
         }
-        Ok(decide(all, standard_error(&without), most))
+        Ok(decide(all, error, most))
     }
 
     fn name(&self) -> &str {
@@ -159,33 +156,14 @@ impl<S: Scalar> GlobalEstimator<S> for SpanningTree<S> {
             });
         }
         let count = members.len();
-        let orders: Vec<Vec<usize>> = (0..GLOBAL_DRAWN)
-            .map(|k| Random::stream(SEED, k as u64).permutation(count))
-            .collect();
-        let mut group = vec![0; count];
-        for (rank, &i) in orders[0].iter().enumerate() {
-            group[i] = rank % GROUPS;
-        }
-        // The last g leaves nothing out.
-        let drawn = |g: usize| {
-            if g < GROUPS {
-                GROUP_DRAWN
-            } else {
-                GLOBAL_DRAWN
-            }
-        };
+        let draws = Draws::new(SEED, count, GLOBAL_DRAWN, GROUP_DRAWN);
         let jobs: Vec<(usize, f64, usize)> = (0..=GROUPS)
             .flat_map(|g| GLOBAL_SHARES.map(|share| (g, share)))
-            .flat_map(|(g, share)| (0..drawn(g)).map(move |k| (g, share, k)))
+            .flat_map(|(g, share)| (0..draws.of(g)).map(move |k| (g, share, k)))
             .collect();
         let found = execute::few(space.execute, jobs.len(), |job| {
             let (g, share, order) = jobs[job];
-            let order = &orders[order];
-            let left: Vec<u32> = order
-                .iter()
-                .filter(|&&k| group[k] != g)
-                .map(|&k| members[k])
-                .collect();
+            let left: Vec<u32> = draws.points(g, order).map(|k| members[k]).collect();
             let take = (left.len() as f64 * share).round() as usize;
             let length = graph.tree_length(&left[..take]);
             ((take as f64).ln(), length.ln())
@@ -201,7 +179,7 @@ impl<S: Scalar> GlobalEstimator<S> for SpanningTree<S> {
         let mut at = 0;
         let values: Vec<f64> = (0..=GROUPS)
             .map(|g| {
-                let count = GLOBAL_SHARES.len() * drawn(g);
+                let count = GLOBAL_SHARES.len() * draws.of(g);
                 at += count;
                 dimension_of(&found[at - count..at], most)
             })

@@ -133,7 +133,7 @@ pub(super) fn greedy<const D: usize>(
         left.retain(|x| flat.squared_distance(x) >= limit);
         flats.push(flat);
     }
-    // One plane alone must not take in what lies off it.
+    // One plane alone would be fitted to all points, those included that it was chosen to leave out.
     let rounds = if count > 1 { ROUNDS } else { 0 };
     for _ in 0..rounds {
         let owner: Vec<usize> = points.iter().map(|x| nearest(&flats, x)).collect();

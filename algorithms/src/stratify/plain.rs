@@ -2,6 +2,7 @@
 //! together, and no flood is needed.
 
 use crate::balls::BallTree;
+use crate::orthogonal::unit_across;
 use nalgebra::{SMatrix, SVector};
 
 /// Coefficients of a quadratic height over two directions.
@@ -193,23 +194,7 @@ fn tangents(width: usize, offsets: &[f64], ends: &mut Vec<f64>, image: &mut Vec<
 
 /// Makes direction `k` of `ends` a unit vector orthogonal to those before it.
 fn orthonormalize(width: usize, ends: &mut [f64], k: usize) -> bool {
-    let (done, rest) = ends.split_at_mut(k * width);
-    let own = &mut rest[..width];
-    let before = dot(own, own);
-    for other in done.chunks_exact(width) {
-        let along = dot(other, own);
-        for (x, o) in own.iter_mut().zip(other) {
-            *x -= along * o;
-        }
-    }
-    let square = dot(own, own);
-    let left = square > 1e-12 * before;
-    if !left {
-        return false;
-    }
-    let inverse = 1.0 / square.sqrt();
-    own.iter_mut().for_each(|x| *x *= inverse);
-    true
+    unit_across(ends, width, k, 1, 1e-12)
 }
 
 #[cfg(test)]

@@ -259,7 +259,7 @@ pub fn chart(settings: &Settings, chart: &impl LocalChart) -> Result<(), LawBrok
 
 #[cfg(test)]
 mod tests {
-    use super::super::twins::catches;
+    use super::super::twins::each_is_caught;
     use super::*;
     use crate::Error;
     use nalgebra::{DMatrix, SymmetricEigen};
@@ -358,8 +358,7 @@ mod tests {
     #[test]
     fn every_fault_is_caught_by_its_law() {
         let put = |fault| chart(&Settings::default(), &Twin(fault, AtomicUsize::new(0)));
-        put(Fault::None).unwrap();
-        for (fault, law) in [
+        let faults: &[(Fault, &Law)] = &[
             (Fault::Overflowing, &FINITE),
             (Fault::Open, &REFUSAL),
             (Fault::NotSquared, &FLAT),
@@ -367,8 +366,7 @@ mod tests {
             (Fault::Kept, &DISTORTION),
             (Fault::Anchored, &MOTION),
             (Fault::Remembering, &MOTION),
-        ] {
-            catches(put(fault), law);
-        }
+        ];
+        each_is_caught(put, Fault::None, faults);
     }
 }

@@ -261,13 +261,25 @@ pub fn crossing_in_four_dimensions(draw: &mut Draw) -> Instance {
 /// A line that goes through a plane of space, within 30 degrees of its normal; a fifth of the points
 /// are on the line. The strata of the truth are the plane and the two halves of the line.
 pub fn line_through_plane(draw: &mut Draw) -> Instance {
+    line_and_plane(draw, |a| a)
+}
+
+/// A line that ends on a plane of space, within 30 degrees of its normal; a fifth of the points are on
+/// the line. The strata of the truth are the plane and the line.
+pub fn line_on_plane(draw: &mut Draw) -> Instance {
+    line_and_plane(draw, |a| -a.abs())
+}
+
+/// A plane and a line whose points are at heights that `height` gives.
+fn line_and_plane(draw: &mut Draw, height: impl Fn(f64) -> f64) -> Instance {
     let lean = draw.between(0.0, 0.5);
     pieces(draw, 3, 5, |k, [a, b]| {
         if k == 0 {
+            let z = height(a);
             Placed {
-                point: vec![lean * a, 0.0, a],
-                stratum: 1 + u8::from(a > 0.0),
-                margin: a.abs(),
+                point: vec![lean * z, 0.0, z],
+                stratum: 1 + u8::from(z > 0.0),
+                margin: z.abs(),
             }
         } else {
             Placed {
@@ -275,6 +287,28 @@ pub fn line_through_plane(draw: &mut Draw) -> Instance {
                 stratum: 0,
                 margin: a.hypot(b),
             }
+        }
+    })
+}
+
+/// A curve of space by itself, a parabola that bends by up to 0.3 in a radius. Its points lie in pairs on both
+/// sides of the center, so that their longest principal direction is the tangent there.
+pub fn curve(draw: &mut Draw) -> Instance {
+    let bend = draw.between(0.0, 0.3);
+    draw.points -= draw.points % 2;
+    let mut other = None;
+    pieces(draw, 3, 1, |_, [x, _]| {
+        let t = match other.take() {
+            Some(t) => t,
+            None => {
+                other = Some(-x);
+                x
+            }
+        };
+        Placed {
+            point: vec![t, bend * t * t, 0.0],
+            stratum: 0,
+            margin: 1.0,
         }
     })
 }
@@ -287,7 +321,7 @@ mod tests {
 
     #[test]
     fn instances_are_what_they_say() {
-        let all: [(Generator, usize, usize); 7] = [
+        let all: [(Generator, usize, usize); 9] = [
             (flat_sheet, 3, 1),
             (two_planes, 3, 4),
             (boundary, 3, 1),
@@ -295,6 +329,8 @@ mod tests {
             (triple_point, 3, 12),
             (crossing_in_four_dimensions, 4, 2),
             (line_through_plane, 3, 3),
+            (line_on_plane, 3, 2),
+            (curve, 3, 1),
         ];
         for (generator, dimension, strata) in all {
             let instance = generator(&mut Draw::new(7, 400));

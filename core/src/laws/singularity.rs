@@ -515,7 +515,7 @@ pub fn model(
 #[cfg(test)]
 mod tests {
     use super::super::instances::flat_sheet;
-    use super::super::twins::catches;
+    use super::super::twins::each_is_caught;
     use super::*;
     use crate::{LocalPoints, Stratum};
 
@@ -616,8 +616,7 @@ mod tests {
                 &Instances::new(&flat_sheet),
             )
         };
-        put(Fault::None).unwrap();
-        for (fault, law) in [
+        let faults: &[(Fault, &Law)] = &[
             (Fault::WildLabel, &PARTITION),
             (Fault::FittedLabels, &PARTITION),
             (Fault::CurvesLast, &PARTITION),
@@ -629,8 +628,7 @@ mod tests {
             (Fault::Refusing, &EXACT),
             (Fault::NoResidual, &NOISE),
             (Fault::TwoCells, &TRUTH),
-        ] {
-            catches(put(fault), law);
-        }
+        ];
+        each_is_caught(put, Fault::None, faults);
     }
 }

@@ -98,6 +98,19 @@ fn a_failure_is_found_again() {
     assert_eq!(first.law, put(2).law);
 }
 
+/// The twin passes without a fault, and with every other one fails by the law that goes with it.
+#[track_caller]
+pub(super) fn each_is_caught<F: Copy>(
+    put: impl Fn(F) -> Result<(), LawBroken>,
+    none: F,
+    faults: &[(F, &'static Law)],
+) {
+    put(none).unwrap();
+    for &(fault, law) in faults {
+        catches(put(fault), law);
+    }
+}
+
 /// The report, which must be about this law and say all there is to say.
 #[track_caller]
 pub(super) fn catches(found: Result<(), LawBroken>, law: &'static Law) -> LawBroken {
