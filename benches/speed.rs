@@ -12,7 +12,9 @@
 //! `run_tdc.py`, `CROSSCAP_PYTHON` the interpreter for them (python3 otherwise).
 
 use crosscap::prelude::*;
+use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::landmarks::RandomGreedy;
+use crosscap_algorithms::moments::MomentTree;
 use crosscap_algorithms::surfaces::{Random, RingConformations};
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::files::{PointOptions, read_points, write_points};
@@ -174,6 +176,7 @@ fn measured(name: &str, arguments: &[String]) -> Outcome<Value> {
         "reconstruct" => reconstruct(arguments),
         "triangulate" => triangulate(arguments),
         "dimensions" => dimensions(arguments),
+        "first-step" => first_step(arguments),
         other => Err(format!("no measurement {other}").into()),
     }
 }
@@ -495,6 +498,19 @@ fn threads(bench: &Bench) -> Outcome<()> {
     Ok(())
 }
 
+/// Arguments: file, eps. The dimension of every neighborhood and nothing else, in one thread.
+fn first_step(arguments: &[String]) -> Outcome<Value> {
+    let cloud = read_points(&arguments[0], &PointOptions::default())?.into_f64();
+    let before = cpu();
+    let tree = MomentTree::new(&cloud)?;
+    let found = tree.settled_dimensions(arguments[1].parse()?, 0.05, &Serial)?;
+    Ok(json!({
+        "cpu": cpu() - before,
+        "peak": peak(),
+        "higher": found.iter().filter(|d| d.dimension > 2).count(),
+    }))
+}
+
 fn cyclo_octane(bench: &Bench) -> Outcome<()> {
     let ring = RingConformations::cyclo_octane();
     let count = if bench.full {
@@ -504,6 +520,20 @@ fn cyclo_octane(bench: &Bench) -> Outcome<()> {
     };
     let file = bench.file("cyclo_octane.npy");
     write_points(&file, &ring.sample(count, 1)?.points)?;
+    let first = bench.best(2, "first-step", &[text(&file), "0.23".into()])?;
+    let own = number(&first, "cpu");
+    println!(
+        "{count} points in R^24, dimension of every neighborhood, one thread: {own:.2} CPU s, {:.0} MiB, {} of dimension 3 and more",
+        number(&first, "peak"),
+        first["higher"]
+    );
+    if let Some(peer) = bench.peer("run_nn_pca.py", &[&text(&file), "0.23", "2000"])? {
+        let theirs = number(&peer, "extrapolated_cpu_s");
+        println!(
+            "scipy kd-tree and numpy PCA, extrapolated from 2,000 points: {theirs:.0} CPU s, {:.0} times as much",
+            theirs / own
+        );
+    }
     for dl in [0.12, 0.11, 0.10, 0.09, 0.08] {
         let arguments: Vec<String> = [text(&file), format!("dl={dl}")]
             .into_iter()

@@ -85,7 +85,6 @@ impl BallTree {
             tree.split(places, &mut order, 0, &mut Vec::new());
             tree.order = order;
         }
-        tree.measure(places);
         tree
     }
 
@@ -105,6 +104,7 @@ impl BallTree {
             leaf: (self.lanes.len() / width) as u32,
             radius: 0.0,
         });
+        self.centers.resize((at + 1) * width, 0.0);
         if rows.len() <= LEAF {
             for k in 0..width {
                 let mut lanes = [f64::INFINITY; LEAF];
@@ -113,7 +113,7 @@ impl BallTree {
                 }
                 self.lanes.push(lanes);
             }
-            return;
+            return self.measure_leaf(at, rows.len());
         }
         let mut low = vec![f64::INFINITY; width];
         let mut high = vec![f64::NEG_INFINITY; width];
@@ -138,33 +138,42 @@ impl BallTree {
         self.split(places, left, start, keyed);
         self.nodes[at].right = self.nodes.len() as u32;
         self.split(places, right, start + half, keyed);
+        self.measure(at);
     }
 
-    /// Centers and radii.
-    fn measure(&mut self, places: &[f64]) {
+    /// Center and radius of a leaf of `count` places.
+    fn measure_leaf(&mut self, at: usize, count: usize) {
         let width = self.width;
-        self.centers = vec![0.0; self.nodes.len() * width];
-        for (node, center) in self
-            .nodes
-            .iter_mut()
-            .zip(self.centers.chunks_exact_mut(width.max(1)))
-        {
-            let rows = &self.order[node.start as usize..node.end as usize];
-            let place = |&i: &u32| &places[i as usize * width..(i as usize + 1) * width];
-            for row in rows {
-                for (c, x) in center.iter_mut().zip(place(row)) {
-                    *c += x;
-                }
+        let first = self.nodes[at].leaf as usize * width;
+        let lanes = &self.lanes[first..first + width];
+        let share = 1.0 / count as f64;
+        let mean = |row: &[f64; LEAF]| row[..count].iter().sum::<f64>() * share;
+        let center: Vec<f64> = lanes.iter().map(mean).collect();
+        let squares = self.squares(&self.nodes[at], &center);
+        let farthest = squares[..count].iter().fold(0.0_f64, |a, &b| a.max(b));
+        self.centers[at * width..].copy_from_slice(&center);
+        self.nodes[at].radius = farthest.sqrt() * (1.0 + ROUNDING);
+    }
+
+    /// Center and radius of the node `at`, with the nodes below it the last so far: a ball about those of its leaves.
+    fn measure(&mut self, at: usize) {
+        let width = self.width;
+        let count = |node: &Node| f64::from(node.end - node.start);
+        let own = count(&self.nodes[at]);
+        let (before, below) = self.centers.split_at_mut((at + 1) * width);
+        let center = &mut before[at * width..];
+        for child in [at + 1, self.nodes[at].right as usize] {
+            let share = count(&self.nodes[child]) / own;
+            for (c, x) in center.iter_mut().zip(&below[(child - at - 1) * width..]) {
+                *c += share * x;
             }
-            let share = 1.0 / f64::from(node.end - node.start);
-            center.iter_mut().for_each(|c| *c *= share);
-            node.radius = rows
-                .iter()
-                .map(|row| squared_distance(place(row), center))
-                .fold(0.0, f64::max)
-                .sqrt()
-                * (1.0 + ROUNDING);
         }
+        let leaves = self.nodes[at + 1..].iter().zip(below.chunks_exact(width));
+        let farthest = leaves
+            .filter(|(leaf, _)| leaf.right == 0)
+            .map(|(leaf, other)| squared_distance(other, center).sqrt() + leaf.radius)
+            .fold(0.0, f64::max);
+        self.nodes[at].radius = farthest * (1.0 + ROUNDING);
     }
 
     /// The caller's indices in the order of the tree.

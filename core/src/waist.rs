@@ -104,26 +104,34 @@ impl<S: Scalar> SparseDistances<S> {
         };
         matrix.starts.push(0);
         let mut seen = vec![u32::MAX; count];
+        let mut row: Vec<u32> = Vec::new();
+        // Pairs are symmetric: row b has the rows behind it in the order in which they ask for theirs.
+        let mut asked: Vec<usize> = vec![0; count];
         for a in 0..count as u32 {
-            let from = matrix.columns.len();
-            for &k in &holding[holders[a as usize]..holders[a as usize + 1]] {
-                for &b in &neighborhoods[k as usize].members {
-                    if b != a && seen[b as usize] != a {
-                        seen[b as usize] = a;
-                        matrix.columns.push(b);
-                    }
-                }
+            let holding = &holding[holders[a as usize]..holders[a as usize + 1]];
+            let members = |k: &u32| &neighborhoods[*k as usize].members;
+            let most = holding.iter().map(|k| members(k).len()).sum();
+            row.resize(row.len().max(most), 0);
+            let mut length = 0;
+            seen[a as usize] = a;
+            for &b in holding.iter().flat_map(members) {
+                // Written in any case and kept if new: a branch would be guessed wrong half of the time.
+                row[length] = b;
+                length += usize::from(seen[b as usize] != a);
+                seen[b as usize] = a;
             }
+            let from = matrix.columns.len();
+            matrix.columns.extend_from_slice(&row[..length]);
             matrix.columns[from..].sort_unstable();
+            asked[a as usize] = from + matrix.columns[from..].partition_point(|&b| b < a);
             for at in from..matrix.columns.len() {
                 let b = matrix.columns[at];
                 let d = if b > a {
                     distance(a, b)
                 } else {
-                    let row = matrix.starts[b as usize]..matrix.starts[b as usize + 1];
-                    // Pairs are symmetric, so row b has a.
-                    let there = matrix.columns[row.clone()].partition_point(|&c| c < a);
-                    matrix.values[row.start + there]
+                    let there = &mut asked[b as usize];
+                    *there += 1;
+                    matrix.values[*there - 1]
                 };
                 if !d.is_finite() || d < S::zero() {
                     return Err(Error::NotFinite {
@@ -241,7 +249,8 @@ impl<S: Scalar> StratifiedLandmarks<S> {
                 }
             }
         }
-        let mut round = vec![(u32::MAX, 0u32); count];
+        // The neighborhood that a landmark was in last, and its position there.
+        let mut round = vec![u64::MAX; count];
         for (k, near) in self.neighborhoods.iter().enumerate() {
             if near.members.first() != Some(&near.center) {
                 return Err(Error::Shape {
@@ -256,14 +265,16 @@ impl<S: Scalar> StratifiedLandmarks<S> {
             for &m in &near.members {
                 in_range(m)?;
             }
-            for (i, &m) in near.members.iter().enumerate() {
-                round[m as usize] = (k as u32, i as u32);
+            let first = (k as u64) << 32;
+            for (i, &m) in (0_u64..).zip(&near.members) {
+                round[m as usize] = first + i;
             }
             // Every member's row is gone through once, rather than searched for every other.
             for (i, &a) in near.members.iter().enumerate() {
-                let before =
-                    |b: u32| round[b as usize].0 == k as u32 && round[b as usize].1 < i as u32;
-                let kept = self.distances.row(a).filter(|x| before(x.0)).count();
+                let before = |b: u32| round[b as usize].wrapping_sub(first) < i as u64;
+                let kept: usize = (self.distances.row(a))
+                    .map(|x| usize::from(before(x.0)))
+                    .sum();
                 if kept == i {
                     continue;
                 }

@@ -47,14 +47,24 @@ pub(crate) fn selection<S: Scalar>(
     taken.iter().for_each(|&i| landmark[i] = true);
     // Taken points may be closer to each other: they are others' choice.
     let mut near = Vec::new();
+    let mut indices = Vec::new();
     let rounding = separation * slack::<S>();
     let mut covered = vec![false; oracle.len()];
     for (k, &i) in chosen.iter().chain(taken).enumerate() {
-        oracle.within(i, S::of(separation + rounding), &mut near);
+        let reach = S::of(separation + rounding);
+        oracle.indices_within(i, reach, &mut indices);
+        let mut others = false;
+        for &x in &indices {
+            covered[x as usize] = true;
+            others |= landmark[x as usize] && x as usize != i;
+        }
+        if !others || k >= chosen.len() {
+            continue;
+        }
+        oracle.within(i, reach, &mut near);
         for x in &near {
-            covered[x.index] = true;
             let close = x.distance.as_f64() < separation - rounding;
-            if k < chosen.len() && close && x.index != i && landmark[x.index] {
+            if close && x.index != i && landmark[x.index] {
                 let detail = format!(
                     "landmark {} at distance {}, separation {separation}",
                     x.index,

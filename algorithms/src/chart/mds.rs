@@ -106,6 +106,7 @@ fn all(gram: DMatrix<f64>, wanted: usize) -> Pairs {
 fn leading(gram: &DMatrix<f64>, wanted: usize) -> Option<Pairs> {
     let count = gram.nrows();
     let mut block = wanted + SPARE;
+    let mut exhausted = false;
     if count < SMALLEST_SEARCH.max(2 * block) {
         return None;
     }
@@ -118,9 +119,11 @@ fn leading(gram: &DMatrix<f64>, wanted: usize) -> Option<Pairs> {
     });
     let mut image = DMatrix::zeros(count, block);
     for round in 1..=ROUNDS {
-        // Distances in R^3 have no more than three directions to offer: then these are all there is.
+        // Distances in R^3 have no more than three directions to offer: then these are all there is, and
+        // nothing is left to converge to.
         let independent = orthonormalize(&mut basis);
         if independent < block {
+            exhausted = true;
             block = independent;
             if block < wanted {
                 return None;
@@ -130,7 +133,7 @@ fn leading(gram: &DMatrix<f64>, wanted: usize) -> Option<Pairs> {
         }
         gram.mul_to(&basis, &mut image);
         // Charts of a surface have converged after a few rounds, and asking is not cheap.
-        if round < FIRST_LOOK || round % 2 == 0 {
+        if !exhausted && (round < FIRST_LOOK || round % 2 == 0) {
             std::mem::swap(&mut basis, &mut image);
             continue;
         }

@@ -84,9 +84,9 @@ pub(super) struct Front<'a, S: Scalar> {
     /// Chain neighbors of each landmark, with the cells that meet in the edge.
     pub(super) curve: Vec<Vec<(u32, u8)>>,
     pub(super) dropped: Vec<bool>,
-    stamp: Vec<u32>,
-    at: Vec<u32>,
-    round: u32,
+    /// The round in which a landmark was located last (high half), and its position then.
+    at: Vec<u64>,
+    round: u64,
     /// Triangles added (`true`) and removed since the last mark.
     log: Vec<(bool, [u32; 3])>,
 }
@@ -95,14 +95,14 @@ impl<S: Scalar> Front<'_, S> {
     /// Makes `position` answer for these members.
     pub(super) fn locate(&mut self, members: &[u32]) {
         self.round += 1;
-        for (i, &m) in members.iter().enumerate() {
-            self.stamp[m as usize] = self.round;
-            self.at[m as usize] = i as u32;
+        for (i, &m) in (0_u64..).zip(members) {
+            self.at[m as usize] = (self.round << 32) + i;
         }
     }
 
     pub(super) fn position(&self, landmark: u32) -> Option<usize> {
-        (self.stamp[landmark as usize] == self.round).then(|| self.at[landmark as usize] as usize)
+        let at = self.at[landmark as usize].wrapping_sub(self.round << 32);
+        (at <= u64::from(u32::MAX)).then_some(at as usize)
     }
 
     /// Number of triangles on an edge.
@@ -276,7 +276,6 @@ impl Triangulator<'_> {
             incident: vec![Vec::new(); count],
             curve,
             dropped: vec![false; count],
-            stamp: vec![0; count],
             at: vec![0; count],
             round: 0,
             log: Vec::new(),

@@ -58,15 +58,16 @@ impl<'a> Patch<'a> {
         let k = members.len();
         front.locate(members);
         // Neighborhoods keep the distances of all their pairs.
-        let mut distances = vec![f64::INFINITY; k * k];
+        let mut distances = vec![f64::INFINITY; k * k + 1];
         for (i, &m) in members.iter().enumerate() {
             distances[i * k + i] = 0.0;
             for (other, d) in front.input.distances.row(m) {
-                if let Some(j) = front.position(other) {
-                    distances[i * k + j] = d.as_f64();
-                }
+                // Those that are not members go to the end: a branch would be guessed wrong too often.
+                let at = front.position(other).map_or(k * k, |j| i * k + j);
+                distances[at] = d.as_f64();
             }
         }
+        distances.truncate(k * k);
         let chart = front.parts.chart.chart(k, &distances, 2)?;
         let places: Vec<[f64; 2]> = chart
             .coordinates
