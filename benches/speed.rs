@@ -203,23 +203,27 @@ fn reconstruct(arguments: &[String]) -> Outcome<Value> {
     parameters.seed = of("seed").unwrap_or(0.0) as u64;
     let cloud = read_points(&arguments[0], &PointOptions::default())?.into_f64();
     let read = cpu();
-    let stages: Rc<RefCell<Vec<(Stage, f64)>>> = Rc::default();
+    type Stages = Vec<(Stage, f64, f64)>;
+    let stages: Rc<RefCell<Stages>> = Rc::default();
     let seen = Rc::clone(&stages);
-    let mut pipeline =
-        Pipeline::new(parameters)?.on_stage(move |stage| seen.borrow_mut().push((stage, cpu())));
+    let mut pipeline = Pipeline::new(parameters)?.on_stage(move |stage| {
+        let now = (stage, cpu(), begin.elapsed().as_secs_f64());
+        seen.borrow_mut().push(now);
+    });
+    let start = begin.elapsed().as_secs_f64();
     let found = pipeline.reconstruct(&cloud)?;
     let end = cpu();
     let stages = stages.borrow();
     let mut spent: HashMap<String, f64> = HashMap::new();
-    for (k, (stage, since)) in stages.iter().enumerate() {
+    for (k, (stage, since, _)) in stages.iter().enumerate() {
         let until = stages.get(k + 1).map_or(end, |s| s.1);
         *spent.entry(stage.to_string()).or_default() += until - since;
     }
     // Everything before the first triangulation.
-    let before = stages
+    let (_, before, wall) = *stages
         .iter()
         .find(|s| s.0 == Stage::Triangulation)
-        .map_or(end, |s| s.1);
+        .ok_or("no triangulation")?;
     Ok(json!({
         "points": cloud.len(),
         "verified": found.is_verified(),
@@ -229,6 +233,7 @@ fn reconstruct(arguments: &[String]) -> Outcome<Value> {
         "neighbors": found.report.mean_neighbors,
         "read": read,
         "before": before - read,
+        "before_wall": wall - start,
         "stages": spent,
         "cpu": cpu(),
         "wall": begin.elapsed().as_secs_f64(),
@@ -534,12 +539,24 @@ fn cyclo_octane(bench: &Bench) -> Outcome<()> {
             theirs / own
         );
     }
+    let run = |dl: f64, threads: usize| {
+        let arguments: Vec<String> = [
+            text(&file),
+            format!("dl={dl}"),
+            format!("threads={threads}"),
+        ]
+        .into_iter()
+        .chain(["eps=0.23", "dp=0.05", "ep=0.02"].map(String::from))
+        .collect();
+        bench.measure("reconstruct", &arguments)
+    };
+    let [one, two] = [run(0.12, 1)?, run(0.12, 2)?].map(|r| number(&r, "before_wall"));
+    println!(
+        "before the triangulation: 1 thread {one:.2} s of wall time, 2 threads {two:.2}: {:.2} times",
+        one / two
+    );
     for dl in [0.12, 0.11, 0.10, 0.09, 0.08] {
-        let arguments: Vec<String> = [text(&file), format!("dl={dl}")]
-            .into_iter()
-            .chain(["eps=0.23", "dp=0.05", "ep=0.02", "threads=0"].map(String::from))
-            .collect();
-        let found = bench.measure("reconstruct", &arguments)?;
+        let found = run(dl, 0)?;
         println!(
             "{count} points in R^24, dl {dl}: {} landmarks, Betti numbers {}, verified {}: {:.1} s of wall time, {:.1} CPU s, {:.0} MiB; {}",
             found["landmarks"],
