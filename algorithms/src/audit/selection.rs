@@ -1,7 +1,12 @@
 //! Landmarks.
 
 use super::{broken, slack};
-use crosscap_core::{Error, NeighborhoodOracle, Scalar};
+use crate::execute::{self, Execute};
+use crosscap_core::{Error, Neighbor, NeighborhoodOracle, Scalar};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Landmarks that a job takes at a time.
+const LANDMARKS_AT_ONCE: usize = 64;
 
 /// What was asked of a selector.
 pub(crate) struct Question<'a> {
@@ -22,6 +27,7 @@ pub(crate) struct Question<'a> {
 /// a candidate that has none so close.
 pub(crate) fn selection<S: Scalar>(
     oracle: &dyn NeighborhoodOracle<Scalar = S>,
+    execute: &dyn Execute,
     question: &Question<'_>,
     chosen: &[usize],
 ) -> Result<(), Error> {
@@ -46,36 +52,49 @@ pub(crate) fn selection<S: Scalar>(
     }
     taken.iter().for_each(|&i| landmark[i] = true);
     // Taken points may be closer to each other: they are others' choice.
-    let mut near = Vec::new();
-    let mut indices = Vec::new();
     let rounding = separation * slack::<S>();
-    let mut covered = vec![false; oracle.len()];
-    for (k, &i) in chosen.iter().chain(taken).enumerate() {
-        let reach = S::of(separation + rounding);
-        oracle.indices_within(i, reach, &mut indices);
-        let mut others = false;
-        for &x in &indices {
-            covered[x as usize] = true;
-            others |= landmark[x as usize] && x as usize != i;
-        }
-        if !others || k >= chosen.len() {
-            continue;
-        }
-        oracle.within(i, reach, &mut near);
-        for x in &near {
-            let close = x.distance.as_f64() < separation - rounding;
-            if close && x.index != i && landmark[x.index] {
-                let detail = format!(
-                    "landmark {} at distance {}, separation {separation}",
-                    x.index,
-                    x.distance.as_f64()
-                );
-                let law = "separation: two landmarks are at distance at least the separation";
-                return broken(plugin, law, i, detail);
+    let covered: Vec<AtomicBool> = (0..oracle.len()).map(|_| AtomicBool::new(false)).collect();
+    let all: Vec<usize> = chosen.iter().chain(taken).copied().collect();
+    let close = execute::map_blocks(
+        execute,
+        LANDMARKS_AT_ONCE,
+        all.len(),
+        || (Vec::new(), Vec::new()),
+        |(indices, near), k| {
+            let i = all[k];
+            let reach = S::of(separation + rounding);
+            oracle.indices_within(i, reach, indices);
+            let mut others = false;
+            for &x in indices.iter() {
+                covered[x as usize].store(true, Ordering::Relaxed);
+                others |= landmark[x as usize] && x as usize != i;
             }
-        }
+            if !others || k >= chosen.len() {
+                return None;
+            }
+            oracle.within(i, reach, near);
+            let close = |x: &&Neighbor<S>| {
+                let distance = x.distance.as_f64();
+                distance < separation - rounding && x.index != i && landmark[x.index]
+            };
+            near.iter().find(close).copied()
+        },
+    );
+    let first = all
+        .iter()
+        .zip(close)
+        .find_map(|(&i, close)| Some((i, close?)));
+    if let Some((i, other)) = first {
+        let detail = format!(
+            "landmark {} at distance {}, separation {separation}",
+            other.index,
+            other.distance.as_f64()
+        );
+        let law = "separation: two landmarks are at distance at least the separation";
+        return broken(plugin, law, i, detail);
     }
-    match candidates.iter().find(|&&i| !covered[i]) {
+    let covered = |i: usize| covered[i].load(Ordering::Relaxed);
+    match candidates.iter().find(|&&i| !covered(i)) {
         None => Ok(()),
         Some(&i) => broken(
             plugin,

@@ -2,7 +2,7 @@
 
 use super::analysis::{Analysis, Analyzer, Role, Scratch};
 use crate::balls::BallTree;
-use crate::execute;
+use crate::execute::{self, Execute};
 use crosscap_core::{Decomposition, Scalar, squared_distance};
 
 /// A point on a curve whose decomposition labels the points around it.
@@ -51,6 +51,8 @@ impl Reference {
 const GRAPH_NEIGHBORS: usize = 12;
 /// Labels are believed up to this share of the radius of the fit.
 const LABEL_REACH: f64 = 0.9;
+/// References that a job takes at a time.
+const REFERENCES_AT_ONCE: usize = 8;
 /// No reference.
 const NONE: u32 = u32::MAX;
 
@@ -61,8 +63,9 @@ pub(super) fn references<S: Scalar>(
     analysis: &Analysis,
     rows: &[usize],
 ) -> Vec<Reference> {
-    execute::map(
+    execute::map_blocks(
         analyzer.execute,
+        REFERENCES_AT_ONCE,
         rows.len(),
         Scratch::default,
         |scratch, k| {
@@ -180,7 +183,7 @@ struct Labels<'a> {
 }
 
 impl<'a> Labels<'a> {
-    fn new(analysis: &Analysis, references: &'a [Reference]) -> Self {
+    fn new(analysis: &Analysis, references: &'a [Reference], execute: &dyn Execute) -> Self {
         let n = analysis.roles.len();
         let places = &analysis.places;
         let mut labels = Self {
@@ -189,12 +192,22 @@ impl<'a> Labels<'a> {
             closest: vec![f64::INFINITY; n],
             own: vec![0; n],
         };
-        for (k, reference) in references.iter().enumerate() {
+        let distances = execute::map_blocks(
+            execute,
+            REFERENCES_AT_ONCE,
+            references.len(),
+            || (),
+            |(), k| -> Vec<f64> {
+                let origin = places.point(references[k].row);
+                let rows = references[k].labels.iter().map(|x| x.0 as usize);
+                rows.map(|row| squared_distance(origin, places.point(row)))
+                    .collect()
+            },
+        );
+        for (k, (reference, distances)) in references.iter().zip(distances).enumerate() {
             let reach = (LABEL_REACH * reference.radius).powi(2);
-            let origin = places.point(reference.row);
-            for &(row, label) in &reference.labels {
+            for (&(row, label), d) in reference.labels.iter().zip(distances) {
                 let row = row as usize;
-                let d = squared_distance(origin, places.point(row));
                 if d < reach && d < labels.closest[row] {
                     labels.closest[row] = d;
                     labels.nearest[row] = k as u32;
@@ -242,7 +255,7 @@ impl CellGraph {
         references: &[Reference],
         region: &Region,
     ) -> Self {
-        let labels = Labels::new(analysis, references);
+        let labels = Labels::new(analysis, references, analyzer.execute);
         let width = analyzer.cloud.dimension();
         let mut coordinates = Vec::with_capacity(region.rows.len() * width);
         for &row in &region.rows {

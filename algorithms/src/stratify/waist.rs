@@ -250,7 +250,7 @@ pub fn stratify<S: Scalar>(
         taken,
         separation: options.dl,
     };
-    audit::selection(analyzer.oracle, &question, &chosen)?;
+    audit::selection(analyzer.oracle, analyzer.execute, &question, &chosen)?;
     rows.extend(&chosen);
     for &row in &options.extra {
         if row < n && analysis.roles[row] == Role::Regular && !chosen.contains(&row) {
