@@ -83,8 +83,9 @@ const SMALLEST_SEARCH: usize = 12;
 const ROUNDS: usize = 60;
 /// First round after which convergence is asked for.
 const FIRST_LOOK: usize = 5;
-/// Error of an eigenvector at which the search ends, as a share of the largest eigenvalue.
-const CONVERGED: f64 = 1e-13;
+/// Error of an eigenvector at which the search ends, as a share of the largest eigenvalue: little more than
+/// rounding leaves.
+const CONVERGED: f64 = 1e-14;
 
 /// The `wanted` largest eigenvalues by definition, fewer where there are fewer.
 fn all(gram: DMatrix<f64>, wanted: usize) -> Pairs {
@@ -146,7 +147,7 @@ fn leading(gram: &DMatrix<f64>, wanted: usize) -> Option<Pairs> {
         let value = |k: usize| eigen.eigenvalues[order[k]];
         let scale = value(0).abs().max(value(block - 1).abs());
         let error = |k: usize| (image.column(k) - basis.column(k) * value(k)).norm();
-        if (0..wanted).all(|k| error(k) <= CONVERGED * scale * count as f64) {
+        if (0..wanted).all(|k| error(k) <= CONVERGED * scale) {
             // Those left out are no larger than the smallest carried along, or have not shown yet.
             let sound = value(wanted - 1) > 0.0 && value(block - 1) > -value(wanted - 1);
             return sound.then(|| {
