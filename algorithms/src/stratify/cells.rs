@@ -292,8 +292,7 @@ impl CellGraph {
                 };
                 let mut add = |k: usize, to: usize| {
                     let node = node_of[to];
-                    if node == NONE {
-                    } else if labels.separated(from, to) {
+                    if node != NONE && labels.separated(from, to) {
                         links.cut += 1;
                     } else {
                         links.targets[k] = node;
