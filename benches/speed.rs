@@ -388,7 +388,7 @@ fn triangulate(arguments: &[String]) -> Outcome<Value> {
     let rows: usize = arguments[0].parse()?;
     let input = waist(PointCloud::new(4, flat_torus(rows, 7))?)?;
     let (before, memory) = (cpu(), peak());
-    let pipeline = Pipeline::<f64>::new(Parameters::new(3.0, 1.0).surface())?;
+    let pipeline = Pipeline::new(Parameters::new(3.0, 1.0).surface())?;
     let found = pipeline.triangulate(&input)?;
     let count = input.strata.len();
     Ok(json!({

@@ -4,7 +4,7 @@ use crate::pipeline::{Parameters, Pipeline};
 use crate::spaces::{MetricName, Spaces};
 use crate::watched::Distortion;
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{Error, PointCloud, Scalar};
+use crosscap_core::{Error, PointCloud};
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -84,8 +84,8 @@ impl ComparedRun {
 /// # Errors
 /// [`Error::Parameter`] where no metric or no radius is given; what goes wrong in a run is in its
 /// [`ComparedRun::reason`].
-pub fn compare<S: Scalar>(
-    cloud: &PointCloud<S>,
+pub fn compare(
+    cloud: &PointCloud<f64>,
     base: &Parameters,
     comparison: &Comparison,
     done: &(dyn Fn() + Sync),
@@ -124,8 +124,8 @@ pub fn compare<S: Scalar>(
     Ok(runs.into_iter().filter_map(OnceLock::into_inner).collect())
 }
 
-fn one<S: Scalar>(
-    cloud: &PointCloud<S>,
+fn one(
+    cloud: &PointCloud<f64>,
     base: &Parameters,
     comparison: &Comparison,
     metric: MetricName,

@@ -28,7 +28,7 @@ const EXACT: f64 = 0.01;
 /// Coordinates of places that are a picture.
 const PICTURE: usize = 3;
 
-impl Pipeline<f64> {
+impl Pipeline {
     /// Reconstructs a surface from the distances of its points.
     ///
     /// Distances of points of a Euclidean space give their coordinates back, up to a motion, and

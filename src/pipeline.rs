@@ -31,7 +31,7 @@ use crosscap_backends::geodesic::GraphReport;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{
     CompatibilityTest, Complex, CurveEdge, DimensionEstimator, Error, LandmarkSelector, LocalChart,
-    Mesh, MetricSpace, Neighbor, NeighborhoodOracle, PointCloud, Scalar, SingularityModel,
+    Mesh, MetricSpace, Neighbor, NeighborhoodOracle, PointCloud, SingularityModel,
     StratifiedLandmarks, TriangleRule,
 };
 use serde::Serialize;
@@ -315,21 +315,21 @@ type WarningObserver = Box<dyn FnMut(&Warning)>;
 /// assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct Pipeline<S: Scalar = f64> {
+pub struct Pipeline {
     parameters: Parameters,
     models: Vec<Box<dyn SingularityModel>>,
-    estimator: Option<Box<dyn DimensionEstimator<Scalar = S>>>,
-    selector: Box<dyn LandmarkSelector<Scalar = S>>,
+    estimator: Option<Box<dyn DimensionEstimator<Scalar = f64>>>,
+    selector: Box<dyn LandmarkSelector<Scalar = f64>>,
     chart: Box<dyn LocalChart>,
     test: Box<dyn CompatibilityTest>,
     rule: Box<dyn TriangleRule>,
-    analysis_metric: Option<Custom<S>>,
-    chart_metric: Option<Custom<S>>,
+    analysis_metric: Option<Custom>,
+    chart_metric: Option<Custom>,
     observer: StageObserver,
     warned: WarningObserver,
 }
 
-impl<S: Scalar> Pipeline<S> {
+impl Pipeline {
     /// The default parts for these parameters: PCA, two planes, random landmarks, classical
     /// scaling, exact planar predicate, largest angle.
     ///
@@ -364,13 +364,13 @@ impl<S: Scalar> Pipeline<S> {
 
     /// Another dimension estimator than principal components with tolerance dt, which is
     /// computed for all points together from the moments of a search tree.
-    pub fn estimator(mut self, estimator: Box<dyn DimensionEstimator<Scalar = S>>) -> Self {
+    pub fn estimator(mut self, estimator: Box<dyn DimensionEstimator<Scalar = f64>>) -> Self {
         self.estimator = Some(estimator);
         self
     }
 
     /// Another landmark selector.
-    pub fn selector(mut self, selector: Box<dyn LandmarkSelector<Scalar = S>>) -> Self {
+    pub fn selector(mut self, selector: Box<dyn LandmarkSelector<Scalar = f64>>) -> Self {
         self.selector = selector;
         self
     }
@@ -395,14 +395,14 @@ impl<S: Scalar> Pipeline<S> {
 
     /// A metric of your own for the analysis, on the rows of the input: neighborhoods, landmarks, cells.
     /// Neighborhoods are found by looking at every point. Coordinates still come from the cloud.
-    pub fn analysis_metric(mut self, metric: Box<dyn MetricSpace<Scalar = S>>) -> Self {
+    pub fn analysis_metric(mut self, metric: Box<dyn MetricSpace<Scalar = f64>>) -> Self {
         self.analysis_metric = Some(Custom::new(metric));
         self
     }
 
     /// A metric of your own for the charts, on the rows of the input: which landmarks are in a chart, and
     /// the distances that it is laid out from.
-    pub fn triangulation_metric(mut self, metric: Box<dyn MetricSpace<Scalar = S>>) -> Self {
+    pub fn triangulation_metric(mut self, metric: Box<dyn MetricSpace<Scalar = f64>>) -> Self {
         self.chart_metric = Some(Custom::new(metric));
         self
     }
@@ -424,7 +424,7 @@ impl<S: Scalar> Pipeline<S> {
     /// # Errors
     /// Input that cannot be worked on ([`Error::is_input`]), or a stage that failed before there was
     /// a mesh. A mesh that is not good comes back in the outcome, unverified.
-    pub fn reconstruct(&mut self, cloud: &PointCloud<S>) -> Result<Outcome, Error> {
+    pub fn reconstruct(&mut self, cloud: &PointCloud<f64>) -> Result<Outcome, Error> {
         self.run(cloud, None)
     }
 
@@ -436,8 +436,8 @@ impl<S: Scalar> Pipeline<S> {
     /// With `given` distances, those of the places of the cloud are used for nothing.
     pub(crate) fn run(
         &mut self,
-        cloud: &PointCloud<S>,
-        given: Option<ChartSpace<'_, S>>,
+        cloud: &PointCloud<f64>,
+        given: Option<ChartSpace<'_, f64>>,
     ) -> Result<Outcome, Error> {
         let mut clock = Clock::default();
         let parameters = self.parameters.clone();
@@ -502,7 +502,7 @@ impl<S: Scalar> Pipeline<S> {
             _ => Vec::new(),
         };
         let principal = PrincipalComponents::new(parameters.dt)?;
-        let estimator: &dyn DimensionEstimator<Scalar = S> =
+        let estimator: &dyn DimensionEstimator<Scalar = f64> =
             self.estimator.as_deref().unwrap_or(&principal);
         let analyzer = Analyzer {
             cloud,
@@ -671,7 +671,7 @@ impl<S: Scalar> Pipeline<S> {
     ///
     /// # Errors
     /// Those of [`Triangulator::triangulate`].
-    pub fn triangulate(&self, waist: &StratifiedLandmarks<S>) -> Result<Triangulation, Error> {
+    pub fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
         self.triangulator(self.chart.as_ref()).triangulate(waist)
     }
 
@@ -706,11 +706,11 @@ impl<S: Scalar> Pipeline<S> {
 }
 
 /// The radii of the neighborhoods, where they are not eps everywhere.
-fn radii<S: Scalar>(
+fn radii(
     parameters: &Parameters,
-    space: &ChartSpace<'_, S>,
-    cloud: &PointCloud<S>,
-    estimator: &dyn DimensionEstimator<Scalar = S>,
+    space: &ChartSpace<'_, f64>,
+    cloud: &PointCloud<f64>,
+    estimator: &dyn DimensionEstimator<Scalar = f64>,
     threads: &Threads,
 ) -> Result<Option<Vec<f64>>, Error> {
     let around = Surroundings {
@@ -719,7 +719,7 @@ fn radii<S: Scalar>(
         cloud: Some(cloud),
         execute: threads,
     };
-    let of = |policy: &dyn NeighborhoodPolicy<S>| {
+    let of = |policy: &dyn NeighborhoodPolicy<f64>| {
         Ok(Some(PolicyOracle::new(policy, &around)?.into_radii()))
     };
     match parameters.spaces.neighborhoods {
@@ -735,19 +735,18 @@ fn radii<S: Scalar>(
 const LEAST_POINTS: usize = 8;
 
 /// A number for the place of a row, equal for equal places.
-fn fingerprint<S: Scalar>(row: &[S]) -> u64 {
+fn fingerprint(row: &[f64]) -> u64 {
     let mut sum = 0u64;
     for x in row {
         // Negative and positive zero are equal.
-        sum =
-            (sum.rotate_left(5) ^ (x.as_f64() + 0.0).to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        sum = (sum.rotate_left(5) ^ (x + 0.0).to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         sum ^= sum >> 29;
     }
     sum
 }
 
 /// The first row of every place, in order.
-fn first_of_each<S: Scalar>(cloud: &PointCloud<S>) -> Vec<usize> {
+fn first_of_each(cloud: &PointCloud<f64>) -> Vec<usize> {
     let mut marks: Vec<(u64, u32)> = cloud
         .iter()
         .zip(0..)
@@ -767,10 +766,10 @@ fn first_of_each<S: Scalar>(cloud: &PointCloud<S>) -> Vec<usize> {
 }
 
 /// Positions of the boundary rows, or of the rows that they are copies of, among the kept ones.
-fn boundary_rows<S: Scalar>(
+fn boundary_rows(
     boundary: &[usize],
     rows: &[usize],
-    cloud: &PointCloud<S>,
+    cloud: &PointCloud<f64>,
 ) -> Result<Vec<usize>, Error> {
     let mut out = Vec::with_capacity(boundary.len());
     let mut by_place: Vec<usize> = if boundary.is_empty() {
@@ -796,20 +795,20 @@ fn boundary_rows<S: Scalar>(
 }
 
 /// Lexicographic order of the coordinates of two rows; negative and positive zero are equal.
-fn order_of_places<S: Scalar>(cloud: &PointCloud<S>, a: usize, b: usize) -> std::cmp::Ordering {
+fn order_of_places(cloud: &PointCloud<f64>, a: usize, b: usize) -> std::cmp::Ordering {
     let pairs = cloud.point(a).iter().zip(cloud.point(b));
     pairs
-        .map(|(x, y)| (x.as_f64() + 0.0).total_cmp(&(y.as_f64() + 0.0)))
+        .map(|(x, y)| (x + 0.0).total_cmp(&(y + 0.0)))
         .find(|o| o.is_ne())
         .unwrap_or(std::cmp::Ordering::Equal)
 }
 
 /// Adds a landmark where the middle of a triangle or of an edge is far from every point: where
 /// the surface bends more than triangles of this size can follow.
-fn add_where_astray<S: Scalar>(
-    oracle: &EuclideanOracle<S>,
+fn add_where_astray(
+    oracle: &EuclideanOracle<f64>,
     analysis: &Analysis,
-    stratification: &Stratification<S>,
+    stratification: &Stratification<f64>,
     complex: &Complex,
     dl: f64,
     extra: &mut Vec<usize>,
@@ -818,24 +817,24 @@ fn add_where_astray<S: Scalar>(
         return; // every point is a landmark already
     }
     let place = |v: u32| analysis.places.point(stratification.rows[v as usize]);
-    let mut near: Vec<Neighbor<S>> = Vec::new();
-    let mut middle: Vec<S> = Vec::new();
+    let mut near: Vec<Neighbor<f64>> = Vec::new();
+    let mut middle: Vec<f64> = Vec::new();
     for t in &complex.triangles {
         let [a, b, c] = *t;
         for corners in [&[a, b][..], &[a, c], &[b, c], &[a, b, c]] {
             middle.clear();
             middle.extend((0..analysis.places.dimension()).map(|k| {
                 let sum: f64 = corners.iter().map(|&v| place(v)[k]).sum();
-                S::of(sum / corners.len() as f64)
+                sum / corners.len() as f64
             }));
             let mut reach = STRAY * dl;
-            if oracle.is_near(&middle, S::of(reach)) {
+            if oracle.is_near(&middle, reach) {
                 continue;
             }
             near.clear();
             while near.is_empty() && reach < 8.0 * dl {
                 reach *= 1.5;
-                oracle.within_of(&middle, S::of(reach), &mut near);
+                oracle.within_of(&middle, reach, &mut near);
             }
             let off = |row: usize| off_plane(t.map(place), &middle, analysis.places.point(row));
             if near.first().is_none_or(|x| off(x.index) < STRAY * dl) {
@@ -858,12 +857,12 @@ fn add_where_astray<S: Scalar>(
 }
 
 /// Distance of `x` from the plane through `middle` that is parallel to a triangle, in R^N.
-fn off_plane<S: Scalar>(corners: [&[f64]; 3], middle: &[S], x: &[f64]) -> f64 {
+fn off_plane(corners: [&[f64]; 3], middle: &[f64], x: &[f64]) -> f64 {
     let minus =
         |p: &[f64], q: &[f64]| -> Vec<f64> { p.iter().zip(q).map(|(a, b)| a - b).collect() };
     let dot = |p: &[f64], q: &[f64]| -> f64 { p.iter().zip(q).map(|(a, b)| a * b).sum() };
     let (u, v) = (minus(corners[1], corners[0]), minus(corners[2], corners[0]));
-    let w: Vec<f64> = x.iter().zip(middle).map(|(a, m)| a - m.as_f64()).collect();
+    let w: Vec<f64> = x.iter().zip(middle).map(|(a, m)| a - m).collect();
     let (uu, uv, vv, uw, vw) = (
         dot(&u, &u),
         dot(&u, &v),
@@ -881,9 +880,9 @@ fn off_plane<S: Scalar>(corners: [&[f64]; 3], middle: &[S], x: &[f64]) -> f64 {
 }
 
 /// The mesh of a triangulation: landmarks that were dropped leave no vertex.
-fn mesh_of<S: Scalar>(
+fn mesh_of(
     complex: &Complex,
-    stratification: &Stratification<S>,
+    stratification: &Stratification<f64>,
     analysis: &Analysis,
     rows: &[usize],
 ) -> Result<Mesh, Error> {
@@ -925,9 +924,9 @@ fn mesh_of<S: Scalar>(
 }
 
 /// The vertices at points in which sheets meet and nothing else, with the link they must have.
-fn special_points<S: Scalar>(
+fn special_points(
     mesh: &Mesh,
-    stratification: &Stratification<S>,
+    stratification: &Stratification<f64>,
     rows: &[usize],
 ) -> Vec<SpecialPoint> {
     stratification
@@ -964,9 +963,9 @@ fn at_input_row(error: Error, landmarks: &[usize], rows: &[usize]) -> Error {
 }
 
 /// The stars that stayed open, as errors.
-fn failures<S: Scalar>(
+fn failures(
     triangulation: &Triangulation,
-    stratification: &Stratification<S>,
+    stratification: &Stratification<f64>,
     rows: &[usize],
 ) -> Vec<Error> {
     triangulation

@@ -5,7 +5,7 @@ use crosscap_algorithms::stratify::ChartSpace;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric, GraphReport, GraphWarning};
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{Error, MetricSpace, NeighborhoodOracle, PointCloud, Scalar};
+use crosscap_core::{Error, MetricSpace, NeighborhoodOracle, PointCloud};
 use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
@@ -229,22 +229,22 @@ impl fmt::Display for Warning {
 const TANGENT_POINTS: usize = 32;
 
 /// What serves the metrics of one reconstruction.
-pub(crate) struct Engines<S: Scalar> {
+pub(crate) struct Engines {
     /// The points as the analysis sees them: lifted for the lifted metric.
-    pub(crate) cloud: PointCloud<S>,
+    pub(crate) cloud: PointCloud<f64>,
     /// Straight lines between them.
-    pub(crate) euclidean: EuclideanOracle<S>,
-    geodesic: Option<GeodesicMetric<S>>,
+    pub(crate) euclidean: EuclideanOracle<f64>,
+    geodesic: Option<GeodesicMetric<f64>>,
     /// Straight lines in the other of the two: lifted for charts alone, or not lifted for charts.
-    other: Option<EuclideanOracle<S>>,
+    other: Option<EuclideanOracle<f64>>,
     spaces: Spaces,
 }
 
-impl<S: Scalar> Engines<S> {
+impl Engines {
     pub(crate) fn new(
         spaces: &Spaces,
         eps: f64,
-        positions: &PointCloud<S>,
+        positions: &PointCloud<f64>,
         threads: &Threads,
     ) -> Result<Self, Error> {
         let flat = EuclideanOracle::new(positions.clone())?;
@@ -276,7 +276,7 @@ impl<S: Scalar> Engines<S> {
     }
 
     /// Metric and oracle of the analysis.
-    pub(crate) fn analysis(&self) -> ChartSpace<'_, S> {
+    pub(crate) fn analysis(&self) -> ChartSpace<'_, f64> {
         match &self.geodesic {
             Some(geodesic) if self.spaces.metric == MetricName::Geodesic => both(geodesic),
             _ => both(&self.euclidean),
@@ -284,7 +284,7 @@ impl<S: Scalar> Engines<S> {
     }
 
     /// Metric and oracle of the charts; `None` for straight lines between the places of the analysis.
-    pub(crate) fn charts(&self) -> Option<ChartSpace<'_, S>> {
+    pub(crate) fn charts(&self) -> Option<ChartSpace<'_, f64>> {
         match (self.spaces.charts(), self.spaces.metric) {
             (MetricName::Geodesic, _) => self.geodesic.as_ref().map(both),
             (MetricName::Lifted, MetricName::Lifted) => None,
@@ -305,9 +305,9 @@ impl<S: Scalar> Engines<S> {
     }
 }
 
-fn both<S: Scalar, T>(space: &T) -> ChartSpace<'_, S>
+fn both<T>(space: &T) -> ChartSpace<'_, f64>
 where
-    T: MetricSpace<Scalar = S> + NeighborhoodOracle<Scalar = S>,
+    T: MetricSpace<Scalar = f64> + NeighborhoodOracle<Scalar = f64>,
 {
     ChartSpace {
         metric: space,
@@ -316,10 +316,10 @@ where
 }
 
 /// A metric of the user's with neighborhoods by looking at every point.
-pub(crate) type Custom<S> = BruteForceOracle<Box<dyn MetricSpace<Scalar = S>>>;
+pub(crate) type Custom = BruteForceOracle<Box<dyn MetricSpace<Scalar = f64>>>;
 
 /// The space of a metric of the user's.
-pub(crate) fn custom<S: Scalar>(oracle: &Custom<S>) -> ChartSpace<'_, S> {
+pub(crate) fn custom(oracle: &Custom) -> ChartSpace<'_, f64> {
     ChartSpace {
         metric: oracle.metric(),
         oracle,

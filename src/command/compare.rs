@@ -12,9 +12,8 @@ use super::terminal::{Progress, say};
 use clap::Args;
 use crosscap::comparison::{ComparedRun, Comparison, RunState, compare};
 use crosscap::{MetricName, Parameters};
-use crosscap_backends::files::{AnyCloud, read_indices, write_bytes_whole};
+use crosscap_backends::files::{read_indices, write_bytes_whole};
 use crosscap_backends::geodesic::EdgeRule;
-use crosscap_core::Error;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -248,16 +247,7 @@ impl Compare {
         let count = comparison.metrics.len() * comparison.radii.len();
         let progress = Progress::of(count as u64, "runs");
         let done = || progress.step();
-        let runs = match &cloud {
-            AnyCloud::F32(cloud) => compare(cloud, &base, &comparison, &done)?,
-            AnyCloud::F64(cloud) => compare(cloud, &base, &comparison, &done)?,
-            other => {
-                return Err(Failure::from(Error::Shape {
-                    found: format!("coordinates of type {}", other.scalar_name()),
-                    expected: "f32 or f64".into(),
-                }));
-            }
-        };
+        let runs = compare(&cloud.to_f64(), &base, &comparison, &done)?;
         drop(progress);
         let mut table = Table {
             crosscap: env!("CARGO_PKG_VERSION").into(),

@@ -11,9 +11,9 @@ use super::terminal::{Progress, complain, say};
 use clap::{Args, ValueEnum};
 use crosscap_algorithms::dimension::{GlobalDimension, Scale, WholeCloud};
 use crosscap_backends::euclidean::EuclideanOracle;
-use crosscap_backends::files::{AnyCloud, write_bytes_whole};
+use crosscap_backends::files::write_bytes_whole;
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{DimensionEstimate, Error, PointCloud, Scalar};
+use crosscap_core::{DimensionEstimate, Error, PointCloud};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -101,15 +101,7 @@ impl Dimension {
             output::check(path, ".csv")?;
             output::distinct(&[&self.points], &[path])?;
         }
-        match self.choice.read(&self.points)? {
-            AnyCloud::F32(cloud) => self.estimate(&cloud),
-            AnyCloud::F64(cloud) => self.estimate(&cloud),
-            other => Err(Failure::usage(format!(
-                "{}: found coordinates of type {}, expected f32 or f64",
-                self.points.display(),
-                other.scalar_name()
-            ))),
-        }
+        self.estimate(&self.choice.read(&self.points)?.into_f64())
     }
 
     fn scale(&self) -> Scale {
@@ -124,7 +116,7 @@ impl Dimension {
         )
     }
 
-    fn estimate<S: Scalar>(&self, cloud: &PointCloud<S>) -> Result<(), Failure> {
+    fn estimate(&self, cloud: &PointCloud<f64>) -> Result<(), Failure> {
         let chosen = if self.estimator.is_empty() {
             EstimatorName::value_variants()
         } else {
@@ -146,10 +138,10 @@ impl Dimension {
             let name = kind.name();
             progress.stage(name);
             if self.global {
-                let answers = kind.global::<S>(self.dt)?.global(&space);
+                let answers = kind.global(self.dt)?.global(&space);
                 global.push(Answers { name, answers });
             } else {
-                let estimator = kind.local::<S>(self.dt)?;
+                let estimator = kind.local(self.dt)?;
                 let answers = space.local(estimator.as_ref());
                 local.push(Answers { name, answers });
             }

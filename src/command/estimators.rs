@@ -5,7 +5,7 @@ use crosscap_algorithms::dimension::{
     CorrelationDimension, GlobalEstimator, MaximumLikelihood, PackingNumbers, PrincipalComponents,
     SpanningTree,
 };
-use crosscap_core::{DimensionEstimator, Error, Scalar};
+use crosscap_core::{DimensionEstimator, Error};
 
 /// Which estimator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -36,10 +36,7 @@ impl EstimatorName {
     }
 
     /// The estimator of neighborhoods.
-    pub fn local<S: Scalar>(
-        self,
-        dt: f64,
-    ) -> Result<Box<dyn DimensionEstimator<Scalar = S>>, Error> {
+    pub fn local(self, dt: f64) -> Result<Box<dyn DimensionEstimator<Scalar = f64>>, Error> {
         Ok(match self {
             Self::Pca => Box::new(PrincipalComponents::new(dt)?),
             Self::Mle => Box::new(MaximumLikelihood::new()),
@@ -50,7 +47,7 @@ impl EstimatorName {
     }
 
     /// The estimator of whole clouds.
-    pub fn global<S: Scalar>(self, dt: f64) -> Result<Box<dyn GlobalEstimator<S>>, Error> {
+    pub fn global(self, dt: f64) -> Result<Box<dyn GlobalEstimator<f64>>, Error> {
         Ok(match self {
             Self::Pca => Box::new(PrincipalComponents::new(dt)?),
             Self::Mle => Box::new(MaximumLikelihood::new()),
@@ -70,7 +67,7 @@ mod tests {
         for &kind in EstimatorName::value_variants() {
             let typed = kind.to_possible_value().unwrap();
             assert_eq!(typed.get_name(), kind.name());
-            assert_eq!(kind.local::<f64>(0.05).unwrap().name(), kind.name());
+            assert_eq!(kind.local(0.05).unwrap().name(), kind.name());
         }
     }
 }

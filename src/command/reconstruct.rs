@@ -16,7 +16,7 @@ use crosscap_backends::files::{
     AnyCloud, Distances, MESH_EXTENSIONS, MeshExtras, read_distances, read_indices,
     write_bytes_whole, write_mesh,
 };
-use crosscap_core::{Error, PointCloud, Scalar};
+use crosscap_core::Error;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -266,7 +266,7 @@ fn told(given: &GivenSpace) -> String {
     }
 }
 
-/// Runs the pipeline in the precision of the points, with progress.
+/// Runs the pipeline with progress.
 pub fn reconstruct(cloud: &AnyCloud, parameters: Parameters) -> Result<Outcome, Error> {
     reconstruct_by(cloud, parameters, EstimatorName::default())
 }
@@ -277,29 +277,11 @@ fn reconstruct_by(
     parameters: Parameters,
     estimator: EstimatorName,
 ) -> Result<Outcome, Error> {
-    match cloud {
-        AnyCloud::F32(cloud) => run(cloud, parameters, estimator),
-        AnyCloud::F64(cloud) => run(cloud, parameters, estimator),
-        other => Err(Error::Shape {
-            found: format!("coordinates of type {}", other.scalar_name()),
-            expected: "f32 or f64".into(),
-        }),
-    }
-}
-
-fn run<S: Scalar>(
-    cloud: &PointCloud<S>,
-    parameters: Parameters,
-    estimator: EstimatorName,
-) -> Result<Outcome, Error> {
-    observed(parameters, estimator)?.reconstruct(cloud)
+    observed(parameters, estimator)?.reconstruct(&cloud.to_f64())
 }
 
 /// A pipeline whose progress is shown, and its warnings as they come.
-fn observed<S: Scalar>(
-    parameters: Parameters,
-    estimator: EstimatorName,
-) -> Result<Pipeline<S>, Error> {
+fn observed(parameters: Parameters, estimator: EstimatorName) -> Result<Pipeline, Error> {
     let progress = Progress::new("starting");
     let shown = progress.clone();
     let dt = parameters.dt;

@@ -6,7 +6,7 @@ use crosscap_core::{Error, PointCloud, Scalar};
 
 /// A point cloud in the precision that its file stores.
 ///
-/// Halving the memory of a large cloud is the use of `f32`; decisions are made in `f64` either way.
+/// Files in `f32` are read in half of the memory; reconstruction itself works in `f64`.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AnyCloud {
@@ -43,6 +43,14 @@ impl AnyCloud {
         match self {
             Self::F32(_) => f32::NAME,
             Self::F64(_) => f64::NAME,
+        }
+    }
+
+    /// The points in double precision, exactly; shares the memory of points that are stored so.
+    pub fn to_f64(&self) -> PointCloud<f64> {
+        match self {
+            Self::F32(cloud) => cloud.cast(),
+            Self::F64(cloud) => cloud.clone(),
         }
     }
 
