@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// An edge along a curve: a boundary, a double curve, a curve of another kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(from = "MarkedEdge")]
 pub struct CurveEdge {
     /// Its ends, the smaller index first.
     pub ends: [u32; 2],
@@ -23,10 +24,25 @@ impl CurveEdge {
     }
 }
 
+/// A curve edge as it is in a file.
+#[derive(Deserialize)]
+struct MarkedEdge {
+    ends: [u32; 2],
+    cells: u8,
+}
+
+impl From<MarkedEdge> for CurveEdge {
+    fn from(edge: MarkedEdge) -> Self {
+        Self::new(edge.ends[0], edge.ends[1], edge.cells)
+    }
+}
+
 /// A finite simplicial complex of dimension at most 2 whose curves are marked.
 ///
 /// Edges of triangles are implied. An edge that is not a curve edge is meant to have two triangles.
+/// What is read from a file goes through [`Complex::new`].
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
 pub struct Complex {
     /// Number of vertices; vertices are `0..vertices`.
     pub vertices: usize,
@@ -34,6 +50,22 @@ pub struct Complex {
     pub triangles: Vec<[u32; 3]>,
     /// Marked edges, sorted, each once.
     pub curve_edges: Vec<CurveEdge>,
+}
+
+/// A complex as it is in a file, before anything is known about it.
+#[derive(Deserialize)]
+struct Unchecked {
+    vertices: usize,
+    triangles: Vec<[u32; 3]>,
+    curve_edges: Vec<CurveEdge>,
+}
+
+impl TryFrom<Unchecked> for Complex {
+    type Error = Error;
+
+    fn try_from(file: Unchecked) -> Result<Self, Error> {
+        Self::new(file.vertices, file.triangles, file.curve_edges)
+    }
 }
 
 impl Complex {
@@ -172,5 +204,28 @@ mod tests {
         assert!(Complex::new(3, vec![[0, 1, 3]], vec![]).is_err());
         assert!(Complex::new(3, vec![[0, 1, 2], [2, 1, 0]], vec![]).is_err());
         assert!(Complex::new(3, vec![], vec![CurveEdge::new(1, 1, 1)]).is_err());
+    }
+
+    #[test]
+    fn a_file_is_put_in_order_or_refused() {
+        use serde_json::{Value, from_value, json, to_value};
+        let edges = vec![CurveEdge::new(0, 1, 2)];
+        let complex = Complex::new(4, vec![[0, 1, 2], [0, 1, 3]], edges).unwrap();
+        let read = |change: fn(&mut Value)| {
+            let mut file = to_value(&complex).unwrap();
+            change(&mut file);
+            from_value::<Complex>(file)
+        };
+        assert_eq!(read(|_| ()).unwrap(), complex);
+        let turned = read(|f| {
+            f["triangles"] = json!([[3, 0, 1], [2, 1, 0]]);
+            f["curve_edges"][0]["ends"] = json!([1, 0]);
+        });
+        assert_eq!(turned.unwrap(), complex);
+        let broken = read(|f| f["triangles"][1] = json!([0, 1, 4])).unwrap_err();
+        assert!(broken.to_string().contains("vertex 4"), "{broken}");
+        assert!(read(|f| f["triangles"][1] = json!([0, 1, 1])).is_err());
+        assert!(read(|f| f["triangles"][1] = json!([0, 1, 2])).is_err());
+        assert!(read(|f| f["curve_edges"][0]["ends"] = json!([2, 2])).is_err());
     }
 }

@@ -3,183 +3,8 @@
 //! Whatever produces this type can be triangulated, whatever triangulates it can be
 //! swapped. It holds no coordinates: a laboratory that measures distances can fill it.
 
-use crate::{CurveEdge, Error, Scalar};
+use crate::{CurveEdge, Error, Scalar, SparseDistances};
 use serde::{Deserialize, Serialize};
-
-/// Symmetric sparse distances in compressed rows.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SparseDistances<S> {
-    starts: Vec<usize>,
-    columns: Vec<u32>,
-    values: Vec<S>,
-}
-
-impl<S: Scalar> SparseDistances<S> {
-    /// Builds the matrix of `count` landmarks from entries `(a, b, distance)`; each pair
-    /// may be given once or several times, in either order; the first one counts.
-    ///
-    /// # Errors
-    /// [`Error::Index`] for an index not below `count`, [`Error::NotFinite`] for a
-    /// distance that is NaN, infinite or negative.
-    pub fn new(
-        count: usize,
-        entries: impl IntoIterator<Item = (u32, u32, S)>,
-    ) -> Result<Self, Error> {
-        let mut all: Vec<(u32, u32, S)> = Vec::new();
-        for (a, b, d) in entries {
-            for i in [a, b] {
-                if i as usize >= count {
-                    return Err(Error::Index {
-                        what: "landmark",
-                        index: i as usize,
-                        limit: count,
-                    });
-                }
-            }
-            if !d.is_finite() || d < S::zero() {
-                return Err(Error::NotFinite {
-                    row: a as usize,
-                    column: b as usize,
-                });
-            }
-            if a != b {
-                all.push((a, b, d));
-                all.push((b, a, d));
-            }
-        }
-        all.sort_by_key(|&(a, b, _)| (a, b));
-        all.dedup_by_key(|&mut (a, b, _)| (a, b));
-        let mut starts = vec![0usize; count + 1];
-        for &(a, _, _) in &all {
-            starts[a as usize + 1] += 1;
-        }
-        for i in 0..count {
-            starts[i + 1] += starts[i];
-        }
-        Ok(Self {
-            starts,
-            columns: all.iter().map(|&(_, b, _)| b).collect(),
-            values: all.iter().map(|&(_, _, d)| d).collect(),
-        })
-    }
-
-    /// The matrix of `count` landmarks that keeps the distances of all members of each
-    /// neighborhood, `distance(a, b)` asked for once for every pair, `a < b`.
-    ///
-    /// O(sum of k^2 over neighborhoods of k members), in memory for the result alone.
-    ///
-    /// # Errors
-    /// Those of [`SparseDistances::new`].
-    pub fn within(
-        count: usize,
-        neighborhoods: &[CellNeighborhood],
-        mut distance: impl FnMut(u32, u32) -> S,
-    ) -> Result<Self, Error> {
-        let mut holders = vec![0usize; count + 1];
-        for &m in neighborhoods.iter().flat_map(|x| &x.members) {
-            if m as usize >= count {
-                return Err(Error::Index {
-                    what: "landmark",
-                    index: m as usize,
-                    limit: count,
-                });
-            }
-            holders[m as usize + 1] += 1;
-        }
-        for k in 0..count {
-            holders[k + 1] += holders[k];
-        }
-        let mut next = holders.clone();
-        let mut holding = vec![0u32; holders[count]];
-        for (k, near) in neighborhoods.iter().enumerate() {
-            for &m in &near.members {
-                holding[next[m as usize]] = k as u32;
-                next[m as usize] += 1;
-            }
-        }
-        let mut matrix = Self {
-            starts: Vec::with_capacity(count + 1),
-            columns: Vec::new(),
-            values: Vec::new(),
-        };
-        matrix.starts.push(0);
-        let mut seen = vec![u32::MAX; count];
-        let mut row: Vec<u32> = Vec::new();
-        // Pairs are symmetric: row b has the rows behind it in the order in which they ask for theirs.
-        let mut asked: Vec<usize> = vec![0; count];
-        for a in 0..count as u32 {
-            let holding = &holding[holders[a as usize]..holders[a as usize + 1]];
-            let members = |k: &u32| &neighborhoods[*k as usize].members;
-            let most = holding.iter().map(|k| members(k).len()).sum();
-            row.resize(row.len().max(most), 0);
-            let mut length = 0;
-            seen[a as usize] = a;
-            for &b in holding.iter().flat_map(members) {
-                // Written in any case and kept if new: a branch would be guessed wrong half of the time.
-                row[length] = b;
-                length += usize::from(seen[b as usize] != a);
-                seen[b as usize] = a;
-            }
-            let from = matrix.columns.len();
-            matrix.columns.extend_from_slice(&row[..length]);
-            matrix.columns[from..].sort_unstable();
-            asked[a as usize] = from + matrix.columns[from..].partition_point(|&b| b < a);
-            for at in from..matrix.columns.len() {
-                let b = matrix.columns[at];
-                let d = if b > a {
-                    distance(a, b)
-                } else {
-                    let there = &mut asked[b as usize];
-                    *there += 1;
-                    matrix.values[*there - 1]
-                };
-                if !d.is_finite() || d < S::zero() {
-                    return Err(Error::NotFinite {
-                        row: a as usize,
-                        column: b as usize,
-                    });
-                }
-                matrix.values.push(d);
-            }
-            matrix.starts.push(matrix.columns.len());
-        }
-        Ok(matrix)
-    }
-
-    /// Number of landmarks.
-    pub fn len(&self) -> usize {
-        self.starts.len().saturating_sub(1)
-    }
-
-    /// Whether there is no landmark.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The distance of two landmarks, where it is kept. O(log k), k the entries of a row.
-    pub fn get(&self, a: u32, b: u32) -> Option<S> {
-        if a == b {
-            return Some(S::zero());
-        }
-        let range = self.starts[a as usize]..self.starts[a as usize + 1];
-        let at = self.columns[range.clone()].binary_search(&b).ok()?;
-        Some(self.values[range.start + at])
-    }
-
-    /// The landmarks to which the distance from `a` is kept, increasing, with the distances.
-    pub fn row(&self, a: u32) -> impl Iterator<Item = (u32, S)> + '_ {
-        let range = self.starts[a as usize]..self.starts[a as usize + 1];
-        self.columns[range.clone()]
-            .iter()
-            .copied()
-            .zip(self.values[range].iter().copied())
-    }
-
-    /// Number of pairs kept.
-    pub fn pairs(&self) -> usize {
-        self.columns.len() / 2
-    }
-}
 
 /// What lies around one landmark inside one cell.
 ///
@@ -199,7 +24,13 @@ pub struct CellNeighborhood {
 /// Indices are below `strata.len()`; the distance of every two members of a neighborhood is kept;
 /// ends of curve edges are landmarks of stratum dimension 0 or 1. [`StratifiedLandmarks::check`]
 /// tells.
+///
+/// A waist that is read from a file is checked on the way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(
+    try_from = "Unchecked<S>",
+    bound(deserialize = "S: Scalar + Deserialize<'de>")
+)]
 pub struct StratifiedLandmarks<S> {
     /// For each landmark the dimension of its stratum: 0, 1 or 2.
     pub strata: Vec<u8>,
@@ -233,6 +64,12 @@ impl<S: Scalar> StratifiedLandmarks<S> {
             return Err(Error::Shape {
                 found: format!("distances of {} landmarks", self.distances.len()),
                 expected: format!("{count}"),
+            });
+        }
+        if let Some(k) = self.strata.iter().position(|&d| d > 2) {
+            return Err(Error::Shape {
+                found: format!("landmark {k} on a stratum of dimension {}", self.strata[k]),
+                expected: "0, 1 or 2".into(),
             });
         }
         for edge in &self.curve_edges {
@@ -289,5 +126,106 @@ impl<S: Scalar> StratifiedLandmarks<S> {
             }
         }
         Ok(())
+    }
+}
+
+/// A waist as it is in a file, before anything is known about it.
+#[derive(Deserialize)]
+#[serde(bound(deserialize = "S: Scalar + Deserialize<'de>"))]
+struct Unchecked<S> {
+    strata: Vec<u8>,
+    curve_edges: Vec<CurveEdge>,
+    neighborhoods: Vec<CellNeighborhood>,
+    distances: SparseDistances<S>,
+}
+
+impl<S: Scalar> TryFrom<Unchecked<S>> for StratifiedLandmarks<S> {
+    type Error = Error;
+
+    fn try_from(file: Unchecked<S>) -> Result<Self, Error> {
+        let waist = Self {
+            strata: file.strata,
+            curve_edges: file.curve_edges,
+            neighborhoods: file.neighborhoods,
+            distances: file.distances,
+        };
+        waist.check()?;
+        Ok(waist)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, from_value, json, to_value};
+
+    /// Two triangles on an edge of a curve.
+    fn waist() -> StratifiedLandmarks<f64> {
+        let around = |center: u32, others: [u32; 2]| CellNeighborhood {
+            center,
+            members: vec![center, others[0], others[1]],
+        };
+        let neighborhoods = vec![around(2, [0, 1]), around(3, [0, 1])];
+        StratifiedLandmarks {
+            strata: vec![1, 1, 2, 2],
+            curve_edges: vec![CurveEdge::new(0, 1, 2)],
+            distances: SparseDistances::within(4, &neighborhoods, |a, b| f64::from(a + b)).unwrap(),
+            neighborhoods,
+        }
+    }
+
+    #[test]
+    fn a_file_gives_back_what_was_written() {
+        let file = to_value(waist()).unwrap();
+        assert_eq!(
+            from_value::<StratifiedLandmarks<f64>>(file).unwrap(),
+            waist()
+        );
+    }
+
+    #[test]
+    fn a_broken_file_is_refused() {
+        let says = |change: fn(&mut Value), part: &str| {
+            let mut file = to_value(waist()).unwrap();
+            change(&mut file);
+            let read = from_value::<StratifiedLandmarks<f64>>(file);
+            let error = read.unwrap_err().to_string();
+            assert!(error.contains(part), "{error}");
+        };
+        says(|f| f["strata"][3] = json!(3), "dimension 3");
+        says(|f| f["strata"][0] = json!(2), "of a surface cell");
+        says(
+            |f| drop(f["strata"].as_array_mut().unwrap().pop()),
+            "of 4 landmarks",
+        );
+        says(|f| f["curve_edges"][0]["ends"][1] = json!(9), "landmark 9");
+        says(
+            |f| f["neighborhoods"][0]["members"][1] = json!(9),
+            "landmark 9",
+        );
+        says(
+            |f| f["neighborhoods"][0]["members"][1] = json!(3),
+            "no distance",
+        );
+        says(
+            |f| f["neighborhoods"][0]["center"] = json!(1),
+            "center first",
+        );
+        says(
+            |f| f["neighborhoods"][0]["members"] = json!([]),
+            "center first",
+        );
+        says(
+            |f| f["distances"]["starts"][1] = json!(99),
+            "rows one after the other",
+        );
+    }
+
+    #[test]
+    fn ends_of_an_edge_come_in_order_from_a_file() {
+        let mut file = to_value(waist()).unwrap();
+        file["curve_edges"][0]["ends"] = json!([1, 0]);
+        let read: StratifiedLandmarks<f64> = from_value(file).unwrap();
+        assert_eq!(read, waist());
     }
 }

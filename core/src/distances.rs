@@ -1,0 +1,323 @@
+//! Distances of some pairs of landmarks.
+
+use crate::{CellNeighborhood, Error, Scalar};
+use serde::{Deserialize, Serialize};
+
+/// Symmetric sparse distances in compressed rows.
+///
+/// What is read from a file is checked as [`SparseDistances::new`] would: rows that are not sorted,
+/// not symmetric or not within each other are refused.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(
+    try_from = "Rows<S>",
+    bound(deserialize = "S: Scalar + Deserialize<'de>")
+)]
+pub struct SparseDistances<S> {
+    starts: Vec<usize>,
+    columns: Vec<u32>,
+    values: Vec<S>,
+}
+
+impl<S: Scalar> SparseDistances<S> {
+    /// Builds the matrix of `count` landmarks from entries `(a, b, distance)`; each pair
+    /// may be given once or several times, in either order; the first one counts.
+    ///
+    /// # Errors
+    /// [`Error::Index`] for an index not below `count`, [`Error::NotFinite`] for a
+    /// distance that is NaN, infinite or negative.
+    pub fn new(
+        count: usize,
+        entries: impl IntoIterator<Item = (u32, u32, S)>,
+    ) -> Result<Self, Error> {
+        let mut all: Vec<(u32, u32, S)> = Vec::new();
+        for (a, b, d) in entries {
+            for i in [a, b] {
+                if i as usize >= count {
+                    return Err(Error::Index {
+                        what: "landmark",
+                        index: i as usize,
+                        limit: count,
+                    });
+                }
+            }
+            if !d.is_finite() || d < S::zero() {
+                return Err(Error::NotFinite {
+                    row: a as usize,
+                    column: b as usize,
+                });
+            }
+            if a != b {
+                all.push((a, b, d));
+                all.push((b, a, d));
+            }
+        }
+        all.sort_by_key(|&(a, b, _)| (a, b));
+        all.dedup_by_key(|&mut (a, b, _)| (a, b));
+        let mut starts = vec![0usize; count + 1];
+        for &(a, _, _) in &all {
+            starts[a as usize + 1] += 1;
+        }
+        for i in 0..count {
+            starts[i + 1] += starts[i];
+        }
+        Ok(Self {
+            starts,
+            columns: all.iter().map(|&(_, b, _)| b).collect(),
+            values: all.iter().map(|&(_, _, d)| d).collect(),
+        })
+    }
+
+    /// The matrix of `count` landmarks that keeps the distances of all members of each
+    /// neighborhood, `distance(a, b)` asked for once for every pair, `a < b`.
+    ///
+    /// O(sum of k^2 over neighborhoods of k members), in memory for the result alone.
+    ///
+    /// # Errors
+    /// Those of [`SparseDistances::new`].
+    pub fn within(
+        count: usize,
+        neighborhoods: &[CellNeighborhood],
+        mut distance: impl FnMut(u32, u32) -> S,
+    ) -> Result<Self, Error> {
+        let mut holders = vec![0usize; count + 1];
+        for &m in neighborhoods.iter().flat_map(|x| &x.members) {
+            if m as usize >= count {
+                return Err(Error::Index {
+                    what: "landmark",
+                    index: m as usize,
+                    limit: count,
+                });
+            }
+            holders[m as usize + 1] += 1;
+        }
+        for k in 0..count {
+            holders[k + 1] += holders[k];
+        }
+        let mut next = holders.clone();
+        let mut holding = vec![0u32; holders[count]];
+        for (k, near) in neighborhoods.iter().enumerate() {
+            for &m in &near.members {
+                holding[next[m as usize]] = k as u32;
+                next[m as usize] += 1;
+            }
+        }
+        let mut matrix = Self {
+            starts: Vec::with_capacity(count + 1),
+            columns: Vec::new(),
+            values: Vec::new(),
+        };
+        matrix.starts.push(0);
+        let mut seen = vec![u32::MAX; count];
+        let mut row: Vec<u32> = Vec::new();
+        // Pairs are symmetric: row b has the rows behind it in the order in which they ask for theirs.
+        let mut asked: Vec<usize> = vec![0; count];
+        for a in 0..count as u32 {
+            let holding = &holding[holders[a as usize]..holders[a as usize + 1]];
+            let members = |k: &u32| &neighborhoods[*k as usize].members;
+            let most = holding.iter().map(|k| members(k).len()).sum();
+            row.resize(row.len().max(most), 0);
+            let mut length = 0;
+            seen[a as usize] = a;
+            for &b in holding.iter().flat_map(members) {
+                // Written in any case and kept if new: a branch would be guessed wrong half of the time.
+                row[length] = b;
+                length += usize::from(seen[b as usize] != a);
+                seen[b as usize] = a;
+            }
+            let from = matrix.columns.len();
+            matrix.columns.extend_from_slice(&row[..length]);
+            matrix.columns[from..].sort_unstable();
+            asked[a as usize] = from + matrix.columns[from..].partition_point(|&b| b < a);
+            for at in from..matrix.columns.len() {
+                let b = matrix.columns[at];
+                let d = if b > a {
+                    distance(a, b)
+                } else {
+                    let there = &mut asked[b as usize];
+                    *there += 1;
+                    matrix.values[*there - 1]
+                };
+                if !d.is_finite() || d < S::zero() {
+                    return Err(Error::NotFinite {
+                        row: a as usize,
+                        column: b as usize,
+                    });
+                }
+                matrix.values.push(d);
+            }
+            matrix.starts.push(matrix.columns.len());
+        }
+        Ok(matrix)
+    }
+
+    /// Number of landmarks.
+    pub fn len(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// Whether there is no landmark.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The distance of two landmarks, where it is kept. O(log k), k the entries of a row.
+    pub fn get(&self, a: u32, b: u32) -> Option<S> {
+        if a == b {
+            return Some(S::zero());
+        }
+        let range = self.starts[a as usize]..self.starts[a as usize + 1];
+        let at = self.columns[range.clone()].binary_search(&b).ok()?;
+        Some(self.values[range.start + at])
+    }
+
+    /// The landmarks to which the distance from `a` is kept, increasing, with the distances.
+    pub fn row(&self, a: u32) -> impl Iterator<Item = (u32, S)> + '_ {
+        let range = self.starts[a as usize]..self.starts[a as usize + 1];
+        self.columns[range.clone()]
+            .iter()
+            .copied()
+            .zip(self.values[range].iter().copied())
+    }
+
+    /// Number of pairs kept.
+    pub fn pairs(&self) -> usize {
+        self.columns.len() / 2
+    }
+}
+
+/// The matrix as it is in a file, before anything is known about it.
+#[derive(Deserialize)]
+struct Rows<S> {
+    starts: Vec<usize>,
+    columns: Vec<u32>,
+    values: Vec<S>,
+}
+
+impl<S: Scalar> TryFrom<Rows<S>> for SparseDistances<S> {
+    type Error = Error;
+
+    /// O(e log k) for e entries, k of them in a row.
+    fn try_from(rows: Rows<S>) -> Result<Self, Error> {
+        let Rows {
+            starts,
+            columns,
+            values,
+        } = rows;
+        let wrong = |found: String, expected: &str| {
+            Err(Error::Shape {
+                found,
+                expected: expected.into(),
+            })
+        };
+        let whole = starts.first() == Some(&0)
+            && starts.is_sorted()
+            && starts.last() == Some(&columns.len())
+            && columns.len() == values.len();
+        if !whole {
+            return wrong(
+                format!(
+                    "rows from {:?} to {:?} of {} columns and {} distances",
+                    starts.first(),
+                    starts.last(),
+                    columns.len(),
+                    values.len()
+                ),
+                "rows one after the other from 0 to the number of columns, a distance for each",
+            );
+        }
+        let matrix = Self {
+            starts,
+            columns,
+            values,
+        };
+        let count = matrix.len();
+        for a in 0..count {
+            let range = matrix.starts[a]..matrix.starts[a + 1];
+            let columns = &matrix.columns[range.clone()];
+            if !columns.is_sorted_by(|x, y| x < y) {
+                return wrong(
+                    format!("row {a} with the columns {columns:?}"),
+                    "increasing ones",
+                );
+            }
+            if let Some(&b) = columns.last().filter(|&&b| b as usize >= count) {
+                return Err(Error::Index {
+                    what: "landmark",
+                    index: b as usize,
+                    limit: count,
+                });
+            }
+            for (&b, &d) in columns.iter().zip(&matrix.values[range]) {
+                if !d.is_finite() || d < S::zero() {
+                    return Err(Error::NotFinite {
+                        row: a,
+                        column: b as usize,
+                    });
+                }
+                if b as usize == a {
+                    return wrong(
+                        format!("a distance of landmark {a} from itself"),
+                        "distances of two landmarks",
+                    );
+                }
+                if matrix.get(b, a as u32) != Some(d) {
+                    return wrong(
+                        format!("the distance {} from {a} to {b}, not back", d.as_f64()),
+                        "the same in both directions",
+                    );
+                }
+            }
+        }
+        Ok(matrix)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, from_value, json, to_value};
+
+    fn line() -> SparseDistances<f64> {
+        SparseDistances::new(4, [(0, 1, 1.0), (1, 2, 0.1 + 0.2), (0, 2, 1.5)]).unwrap()
+    }
+
+    #[test]
+    fn a_file_gives_back_what_was_written() {
+        for matrix in [line(), SparseDistances::new(0, []).unwrap()] {
+            let file = to_value(&matrix).unwrap();
+            assert_eq!(from_value::<SparseDistances<f64>>(file).unwrap(), matrix);
+        }
+    }
+
+    /// Each of these would have been found by a panic, or not at all.
+    #[test]
+    fn a_broken_file_is_refused() {
+        let with = |change: fn(&mut Value)| {
+            let mut file = to_value(line()).unwrap();
+            change(&mut file);
+            let read = from_value::<SparseDistances<f64>>(file);
+            read.unwrap_err().to_string()
+        };
+        let says = |change, part: &str| {
+            let error = with(change);
+            assert!(error.contains(part), "{error}");
+        };
+        says(|f| f["starts"] = json!([]), "rows from None");
+        says(|f| f["starts"][4] = json!(5), "to Some(5) of 6 columns");
+        says(|f| f["starts"][1] = json!(99), "rows one after the other");
+        says(
+            |f| drop(f["values"].as_array_mut().unwrap().pop()),
+            "5 distances",
+        );
+        says(|f| f["columns"][1] = json!(7), "landmark 7 is out of range");
+        says(|f| f["columns"][0] = json!(2), "increasing");
+        says(|f| f["columns"][0] = json!(0), "from itself");
+        says(|f| f["columns"][1] = json!(3), "both directions");
+        says(|f| f["values"][0] = json!(1.25), "both directions");
+        says(|f| f["values"][0] = json!(-1.0), "row 0, column 1");
+        // Beyond what single precision holds.
+        let mut file = to_value(line()).unwrap();
+        file["values"][0] = json!(1e300);
+        assert!(from_value::<SparseDistances<f32>>(file).is_err());
+    }
+}
