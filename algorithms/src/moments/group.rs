@@ -778,7 +778,13 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
     #[cold]
     fn naive(&mut self, dt: f64) -> u32 {
         self.collect();
-        let frame = PrincipalFrame::of(self.reach.cloud, self.rows.iter().copied());
+        let cloud = self.reach.cloud;
+        if !self.has_moments()
+            && let Some(found) = super::wide::dimension(cloud, &self.rows, dt)
+        {
+            return found;
+        }
+        let frame = PrincipalFrame::of(cloud, self.rows.iter().copied());
         super::dimension_of(&frame.variances, dt)
     }
 }

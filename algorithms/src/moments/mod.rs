@@ -15,6 +15,7 @@
 //! | all balls about a few centers that lie together | `group` |
 //! | leading directions of such a group | `frame` |
 //! | the dimension from part of the spectrum, with proof | `decide` |
+//! | the same in more than 64 coordinates, ball by ball | `wide` |
 //! | dimension 2 for many balls at once, with proof | `settle` |
 //!
 //! **What is exact.** Membership: that of `squared_distance(a, b).sqrt()`, rounded to the scalar of
@@ -37,6 +38,7 @@ mod placement;
 mod reach;
 mod settle;
 mod tree;
+mod wide;
 
 #[cfg(test)]
 mod tests;
