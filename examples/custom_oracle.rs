@@ -2,13 +2,6 @@
 //!
 //! `cargo run --release --example custom_oracle`
 
-use crosscap::algorithms::dimension::PrincipalComponents;
-use crosscap::algorithms::execute::Serial;
-use crosscap::algorithms::homology::homology;
-use crosscap::algorithms::landmarks::RandomGreedy;
-use crosscap::algorithms::stratify::{
-    AnalysisOptions, Analyzer, Dimensions, StratifyOptions, stratify,
-};
 use crosscap::algorithms::surfaces::{SampleSurface, Sampling};
 use crosscap::{Parameters, Pipeline};
 use crosscap_core::laws::{self, Settings, StraightLine};
@@ -119,40 +112,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     oracle.within(55, 1.5, &mut near);
     println!("{} points within 1.5 of the middle", near.len());
 
-    // Everything downstream of the neighborhoods, as the pipeline puts it together.
+    // In the pipeline it is asked for everything that a search tree is asked for otherwise.
     let cloud = SampleSurface::find("torus")?
         .sample(&Sampling::new(4000, 7))?
         .points;
-    let oracle = SortedAxis::new(cloud.clone());
-    let analyzer = Analyzer {
-        cloud: &cloud,
-        metric: &StraightLine(cloud.clone()),
-        oracle: &oracle,
-        dimensions: Dimensions::Estimator(&PrincipalComponents::new(0.05)?),
-        models: &[],
-        execute: &Serial,
-    };
-    let mut analysis = analyzer.analyze(&AnalysisOptions {
-        eps: 0.6,
-        surface: false,
-        boundary: Vec::new(),
-        dt: 0.05,
-        radii: None,
-    })?;
-    let (dl, selector) = (0.4, RandomGreedy::new());
-    let options = StratifyOptions {
-        dl,
-        tri_eps: 3.0 * dl,
-        seed: 0,
-        extra: Vec::new(),
-    };
-    let strata = stratify(&analyzer, &mut analysis, None, &selector, &options)?;
-    let parameters = Parameters::new(0.6, dl);
-    let triangulation = Pipeline::new(parameters)?.triangulate(&strata.waist)?;
+    let parameters = Parameters::new(0.6, 0.4);
+    let outcome = Pipeline::new(parameters)?
+        .oracle(Box::new(SortedAxis::new(cloud.clone())))
+        .reconstruct(&cloud)?;
     println!(
         "{} triangles, Betti numbers {:?}",
-        triangulation.complex.triangles.len(),
-        homology(&triangulation.complex)?.betti_rational
+        outcome.mesh.complex.triangles.len(),
+        outcome.homology.betti_rational
     );
     Ok(())
 }

@@ -1,10 +1,10 @@
 //! Reconstruction from distances alone.
 
-use crate::pipeline::{Outcome, Parameters, Pipeline};
+use crate::pipeline::{Input, Outcome, Parameters, Pipeline};
 use crate::spaces::Warning;
 use crosscap_algorithms::metric::{BruteForceOracle, GivenDistances};
 use crosscap_algorithms::scaling::{Scaled, picture_of_metric, scale_metric, scale_patches};
-use crosscap_algorithms::stratify::ChartSpace;
+use crosscap_algorithms::space::Space;
 use crosscap_backends::files::Distances;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
 use crosscap_backends::parallel::Threads;
@@ -71,10 +71,7 @@ impl Pipeline {
                     return self.with_coordinates(&scaled);
                 }
                 let picture = picture_of_metric(oracle.metric(), PICTURE)?;
-                let space = ChartSpace {
-                    metric: oracle.metric(),
-                    oracle: &oracle,
-                };
+                let space = Space::new(oracle.metric(), &oracle);
                 self.without_coordinates(&picture, space, Vec::new())
             }
             Distances::Sparse(known) => {
@@ -85,10 +82,7 @@ impl Pipeline {
                 }
                 let (metric, warnings) = paths(known, self.parameters(), &threads)?;
                 let picture = picture_of_metric(&metric, PICTURE)?;
-                let space = ChartSpace {
-                    metric: &metric,
-                    oracle: &metric,
-                };
+                let space = Space::of(&metric);
                 self.without_coordinates(&picture, space, warnings)
             }
         }
@@ -111,7 +105,7 @@ impl Pipeline {
     fn without_coordinates(
         &mut self,
         picture: &Scaled,
-        space: ChartSpace<'_, f64>,
+        space: Space<'_, f64>,
         warnings: Vec<Warning>,
     ) -> Result<Outcome, Error> {
         let parameters = self.parameters();
@@ -147,7 +141,10 @@ impl Pipeline {
         }
         let places = crate::spaces::padded(&picture.places, 2)?;
         warnings.iter().for_each(|warning| self.warn(warning));
-        let mut outcome = self.run(&places, Some(space))?;
+        let mut outcome = self.run(&Input {
+            cloud: &places,
+            given: Some(space),
+        })?;
         outcome.report.given = Some(GivenSpace {
             dimension: picture.places.dimension(),
             deviation: picture.deviation,

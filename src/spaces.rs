@@ -1,11 +1,12 @@
 //! Which distances a reconstruction is made with, and what serves them.
 
 use crosscap_algorithms::metric::{BruteForceOracle, Lifted, tangent_planes};
+use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::ChartSpace;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric, GraphReport, GraphWarning};
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{Error, MetricSpace, NeighborhoodOracle, PointCloud};
+use crosscap_core::{Error, MetricSpace, PointCloud};
 use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
@@ -275,22 +276,25 @@ impl Engines {
         })
     }
 
-    /// Metric and oracle of the analysis.
-    pub(crate) fn analysis(&self) -> ChartSpace<'_, f64> {
+    /// The space of the analysis.
+    pub(crate) fn analysis(&self) -> Space<'_, f64> {
         match &self.geodesic {
-            Some(geodesic) if self.spaces.metric == MetricName::Geodesic => both(geodesic),
-            _ => both(&self.euclidean),
+            Some(geodesic) if self.spaces.metric == MetricName::Geodesic => {
+                Space::of(geodesic).with_places(&self.cloud)
+            }
+            _ => Space::of(&self.euclidean),
         }
     }
 
-    /// Metric and oracle of the charts; `None` for straight lines between the places of the analysis.
-    pub(crate) fn charts(&self) -> Option<ChartSpace<'_, f64>> {
-        match (self.spaces.charts(), self.spaces.metric) {
-            (MetricName::Geodesic, _) => self.geodesic.as_ref().map(both),
+    /// What measures the charts.
+    pub(crate) fn charts(&self) -> ChartSpace<'_, f64> {
+        let own = match (self.spaces.charts(), self.spaces.metric) {
+            (MetricName::Geodesic, _) => self.geodesic.as_ref().map(Space::of),
             (MetricName::Lifted, MetricName::Lifted) => None,
             (MetricName::Euclidean, MetricName::Euclidean | MetricName::Geodesic) => None,
-            _ => self.other.as_ref().map(both),
-        }
+            _ => self.other.as_ref().map(Space::of),
+        };
+        own.map_or(ChartSpace::Places, ChartSpace::Metric)
     }
 
     /// The graph of geodesic distances, where there is one.
@@ -305,25 +309,12 @@ impl Engines {
     }
 }
 
-fn both<T>(space: &T) -> ChartSpace<'_, f64>
-where
-    T: MetricSpace<Scalar = f64> + NeighborhoodOracle<Scalar = f64>,
-{
-    ChartSpace {
-        metric: space,
-        oracle: space,
-    }
-}
-
 /// A metric of the user's with neighborhoods by looking at every point.
 pub(crate) type Custom = BruteForceOracle<Box<dyn MetricSpace<Scalar = f64>>>;
 
 /// The space of a metric of the user's.
-pub(crate) fn custom(oracle: &Custom) -> ChartSpace<'_, f64> {
-    ChartSpace {
-        metric: oracle.metric(),
-        oracle,
-    }
+pub(crate) fn custom(oracle: &Custom) -> Space<'_, f64> {
+    Space::new(oracle.metric(), oracle)
 }
 
 /// Positions of places that may be lifted: their first `dimension` coordinates.

@@ -2,12 +2,14 @@
 
 use crosscap::prelude::*;
 use crosscap_algorithms::chart::ClassicalScaling;
+use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::metric::Euclidean;
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::TwoPlanes;
-use crosscap_algorithms::stratify::{AnalysisOptions, Analyzer, Dimensions};
+use crosscap_algorithms::space::Space;
+use crosscap_algorithms::stratify::{AnalysisOptions, Analyzer, Dimensions, Tuning};
 use crosscap_algorithms::surfaces::Random;
 use crosscap_algorithms::triangulate::MinimumCircumradius;
 use crosscap_backends::euclidean::EuclideanOracle;
@@ -150,16 +152,15 @@ fn analysis(
         eps: 0.6,
         surface: true,
         boundary: Vec::new(),
-        dt: 0.05,
         radii: None,
     };
+    let estimator = PrincipalComponents::new(0.05)?;
     let analyzer = Analyzer {
-        cloud: &cloud,
-        metric,
-        oracle,
-        dimensions: Dimensions::Known(&[]),
+        space: Space::new(metric, oracle).with_places(&cloud),
+        dimensions: Dimensions::by(&estimator),
         models: &[],
         execute: &Serial,
+        tuning: &Tuning::MEASURED,
     };
     analyzer.analyze(&options).map(|_| ())
 }

@@ -8,8 +8,10 @@ use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::TwoPlanes;
+use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::{
-    AnalysisOptions, Analyzer, Dimensions, Stratification, StratifyOptions, stratify,
+    AnalysisOptions, Analyzer, ChartSpace, Cut, Dimensions, Stratification, StratifyOptions,
+    Tuning, WaistProducer,
 };
 use crosscap_algorithms::surfaces::{Random, RigidMotion, embed, scaled};
 use crosscap_algorithms::triangulate::{LargestAngle, Rules, Triangulator};
@@ -312,29 +314,30 @@ fn waist_of<S: Scalar>(
         Some(rows) => Box::new(Given(rows, PhantomData)),
         None => Box::new(RandomGreedy::new()),
     };
+    let metric = Euclidean::new(cloud);
+    let estimator = PrincipalComponents::new(p.dt).unwrap();
     let analyzer = Analyzer {
-        cloud: &cloud,
-        metric: &Euclidean::new(cloud.clone()),
-        oracle,
-        dimensions: Dimensions::Estimator(&PrincipalComponents::new(p.dt).unwrap()),
+        space: Space::new(&metric, oracle),
+        dimensions: Dimensions::by(&estimator),
         models: &models,
         execute: &Serial,
+        tuning: &Tuning::MEASURED,
     };
     let options = AnalysisOptions {
         eps: p.eps,
         radii: None,
         surface: p.surface,
         boundary: p.boundary.clone(),
-        dt: p.dt,
     };
-    let mut analysis = analyzer.analyze(&options).unwrap();
+    let analysis = analyzer.analyze(&options).unwrap();
     let options = StratifyOptions {
         dl: p.dl,
         tri_eps: p.chart_radius(),
         seed: p.seed,
-        extra: Vec::new(),
     };
-    stratify(&analyzer, &mut analysis, None, selector.as_ref(), &options).unwrap()
+    let charts = ChartSpace::Places;
+    let cut = Cut::new(&analyzer, &analysis, charts, selector.as_ref(), &options).unwrap();
+    cut.waist(&[]).unwrap()
 }
 
 /// The complex of a waist with the default parts.

@@ -22,6 +22,7 @@ pub mod predicate;
 pub mod principal;
 pub mod scaling;
 pub mod singularity;
+pub mod space;
 pub mod stratify;
 pub mod surfaces;
 pub mod triangulate;

@@ -188,6 +188,10 @@ impl<S: Scalar> MetricSpace for EuclideanOracle<S> {
         self.distance_to(self.cloud.point(a), b)
     }
 
+    fn places(&self) -> Option<&PointCloud<S>> {
+        Some(&self.cloud)
+    }
+
     fn name(&self) -> &str {
         "euclidean"
     }
@@ -236,6 +240,10 @@ impl<S: Scalar> NeighborhoodOracle for EuclideanOracle<S> {
             out.truncate(count);
         }
         sort(out);
+    }
+
+    fn is_near(&self, place: &[S], radius: S) -> bool {
+        EuclideanOracle::is_near(self, place, radius)
     }
 
     /// As the trait says, in the order of the tree.

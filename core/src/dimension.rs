@@ -38,6 +38,15 @@ pub trait DimensionEstimator: Sync {
         neighborhood: &Neighborhood<'_, Self::Scalar>,
     ) -> Result<DimensionEstimate, Error>;
 
+    /// The estimate from the variances along the principal directions of a neighborhood, largest first,
+    /// for an estimator that reads nothing else: whoever fits a model to a ball has them at hand. As it
+    /// stands `None`, and [`estimate`](Self::estimate) is asked.
+    ///
+    /// An answer must be that of `estimate` for a neighborhood with these variances.
+    fn of_variances(&self, _variances: &[f64]) -> Option<DimensionEstimate> {
+        None
+    }
+
     /// Short name for reports.
     fn name(&self) -> &str;
 }

@@ -1,6 +1,6 @@
 //! Distances between the points of a finite set.
 
-use crate::Scalar;
+use crate::{PointCloud, Scalar};
 
 /// A finite metric space: points are the integers `0..len()`.
 ///
@@ -10,7 +10,9 @@ use crate::Scalar;
 /// - *symmetry*: `distance(a, b) == distance(b, a)`, to the bit;
 /// - *triangle inequality*: `distance(a, c) <= distance(a, b) + distance(b, c)` within rounding;
 /// - *never NaN*; infinity says that no path joins the two points;
-/// - *many at once*: [`MetricSpace::distances_to`] gives what `distance` gives, to the bit.
+/// - *many at once*: [`MetricSpace::distances_to`] gives what `distance` gives, to the bit;
+/// - *places*: where [`MetricSpace::places`] names coordinates, every distance is that of a straight
+///   line between them, within rounding.
 ///
 /// Distances are in the unit of the data. An implementation over coordinates need
 /// not be a norm: a graph distance, a distance on a torus or a measured matrix serve as well.
@@ -43,6 +45,15 @@ pub trait MetricSpace: Sync {
         out.extend(to.iter().map(|&point| self.distance(from, point)));
     }
 
+    /// Coordinates of the points, where the metric is the straight line between them; `None`, as it
+    /// stands, for every other metric.
+    ///
+    /// Search trees over coordinates answer for such a metric without asking it. A metric that *uses*
+    /// coordinates but measures otherwise, along a surface or around a torus, must not name them.
+    fn places(&self) -> Option<&PointCloud<Self::Scalar>> {
+        None
+    }
+
     /// Short name for reports.
     fn name(&self) -> &str;
 }
@@ -57,6 +68,9 @@ impl<M: MetricSpace + ?Sized> MetricSpace for &M {
     }
     fn distances_to(&self, from: usize, to: &[usize], out: &mut Vec<Self::Scalar>) {
         (**self).distances_to(from, to, out);
+    }
+    fn places(&self) -> Option<&PointCloud<Self::Scalar>> {
+        (**self).places()
     }
     fn name(&self) -> &str {
         (**self).name()
@@ -73,6 +87,9 @@ impl<M: MetricSpace + ?Sized> MetricSpace for Box<M> {
     }
     fn distances_to(&self, from: usize, to: &[usize], out: &mut Vec<Self::Scalar>) {
         (**self).distances_to(from, to, out);
+    }
+    fn places(&self) -> Option<&PointCloud<Self::Scalar>> {
+        (**self).places()
     }
     fn name(&self) -> &str {
         (**self).name()

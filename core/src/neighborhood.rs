@@ -60,6 +60,12 @@ pub trait NeighborhoodOracle: Sync {
     ) -> bool {
         false
     }
+
+    /// Whether a point is closer to a place than `radius`; `false` where the space has no coordinates.
+    fn is_near(&self, place: &[Self::Scalar], radius: Self::Scalar) -> bool {
+        let mut near = Vec::new();
+        self.within_of(place, radius, &mut near) && !near.is_empty()
+    }
 }
 
 /// A neighborhood as a dimension estimator sees it.

@@ -11,7 +11,8 @@ const FAR: usize = 8;
 /// # Errors
 /// [`Error::Shape`] when it has another number of points than the oracle, [`Error::Law`] for a distance
 /// that is NaN or negative, for a distance of a point from itself other than 0, for two that differ by direction,
-/// and for one that is longer than a way around.
+/// for one that is longer than a way around, and for one that is not the straight line between the places that the
+/// metric names.
 pub(crate) fn metric<S: Scalar>(
     metric: &dyn MetricSpace<Scalar = S>,
     oracle: &dyn NeighborhoodOracle<Scalar = S>,
@@ -49,6 +50,31 @@ pub(crate) fn metric<S: Scalar>(
             points.push(far);
         }
         among(metric, &points)?;
+        straight(metric, &points)?;
+    }
+    Ok(())
+}
+
+/// Where a metric names places, its distances are those of the places.
+fn straight<S: Scalar>(
+    metric: &dyn MetricSpace<Scalar = S>,
+    points: &[usize],
+) -> Result<(), Error> {
+    let Some(places) = metric.places() else {
+        return Ok(());
+    };
+    let law = "places: every distance is that of a straight line between them";
+    if places.len() != metric.len() {
+        let detail = format!("{} places of {} points", places.len(), metric.len());
+        return broken(metric.name(), law, points[0], detail);
+    }
+    for &other in &points[1..] {
+        let told = metric.distance(points[0], other).as_f64();
+        let line = places.squared_distance(points[0], other).sqrt();
+        if (told - line).abs() > slack::<S>() * told.max(line) {
+            let detail = format!("distance {told} to point {other}, {line} between the places");
+            return broken(metric.name(), law, points[0], detail);
+        }
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use super::incidence::Incidence;
 use super::{
     Certificate, CertificateOptions, Place, Violation, ViolationKind, edges, indices, links, within,
 };
-use crosscap_core::{Mesh, MetricSpace, NeighborhoodOracle, PointCloud, Scalar};
+use crosscap_core::{Mesh, MetricSpace, NeighborhoodOracle, Scalar};
 use serde::Serialize;
 
 /// Folds, needles and cover, from distances.
@@ -46,15 +46,8 @@ pub fn certify_by_distances<S: Scalar>(
     oracle: &dyn NeighborhoodOracle<Scalar = S>,
     options: &CertificateOptions<'_>,
 ) -> Certificate {
-    // Distinct places that say nothing: that vertices are apart is asked of the metric.
-    let names = PointCloud::new(1, (0..mesh.vertices.len()).map(|v| v as f64).collect());
-    let named = Mesh {
-        complex: mesh.complex.clone(),
-        vertices: names.unwrap_or_else(|_| mesh.vertices.clone()),
-        point_index: mesh.point_index.clone(),
-    };
     let mut certificate = Certificate {
-        indices: indices::check(&named),
+        indices: indices::arrays(mesh, |_| Vec::new()),
         edges: None,
         links: None,
         geometry: None,
@@ -62,7 +55,6 @@ pub fn certify_by_distances<S: Scalar>(
         quality: None,
         by_distances: None,
     };
-    certificate.indices.dimension = 0;
     let rows: Option<Vec<usize>> = (mesh.point_index.iter())
         .map(|&row| usize::try_from(row).ok().filter(|&r| r < metric.len()))
         .collect();
@@ -77,17 +69,21 @@ pub fn certify_by_distances<S: Scalar>(
     };
     let incidence = Incidence::new(&mesh.complex);
     certificate.edges = Some(edges::check(
-        &named,
+        mesh,
         &incidence,
         options.closed,
         options.limits.shortest_boundary,
     ));
     certificate.links = Some(links::check(
-        &named,
+        mesh,
         &incidence,
         options.admissible_links,
         options.special_points,
     ));
+    let of_edges = certificate.edges.iter_mut().flat_map(|r| &mut r.violations);
+    let of_links = certificate.links.iter_mut().flat_map(|r| &mut r.violations);
+    // The mesh is drawn somewhere, but its points have no coordinates.
+    of_edges.chain(of_links).for_each(|v| v.coordinates.clear());
     let report = check(mesh, &incidence, &rows, metric, oracle, options);
     certificate.by_distances = Some(report);
     certificate
@@ -230,6 +226,25 @@ fn smallest_angle(mut sides: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metric::{BruteForceOracle, Euclidean};
+    use crosscap_core::{Complex, PointCloud};
+
+    #[test]
+    fn messages_name_no_coordinates() {
+        let faces = vec![[0, 1, 2], [0, 1, 3], [0, 2, 3]];
+        let corners = vec![1., 1., 1., 1., -1., -1., -1., 1., -1., -1., -1., 1.];
+        let picture = PointCloud::new(3, corners).unwrap();
+        let complex = Complex::new(4, faces, vec![]).unwrap();
+        let mesh = Mesh::new(complex, picture.clone(), vec![0, 1, 2, 3]).unwrap();
+        let metric = Euclidean::new(picture);
+        let oracle = BruteForceOracle::new(&metric);
+        let options = CertificateOptions::default();
+        let certificate = certify_by_distances(&mesh, &metric, &oracle, &options);
+        assert!(certificate.violations().count() > 0);
+        for violation in certificate.violations() {
+            assert_eq!(violation.coordinates, [] as [f64; 0], "{violation}");
+        }
+    }
 
     #[test]
     fn angles_of_known_tetrahedra() {

@@ -24,12 +24,27 @@ pub struct IndexReport {
 /// Two vertices nearer than this times the median edge are at one place.
 const SAME_PLACE: f64 = 1e-9;
 
+/// The arrays of a mesh, and whether its vertices are at distinct places.
 pub(super) fn check(mesh: &Mesh) -> IndexReport {
+    let mut report = arrays(mesh, |place| super::coordinates(mesh, place));
+    report.dimension = mesh.vertices.dimension();
+    if report.usable {
+        let at = |place: Place| super::coordinates(mesh, place);
+        let kind = ViolationKind::CoincidentVertices;
+        report
+            .violations
+            .extend(Violation::at(kind, coincident(mesh), at));
+    }
+    report
+}
+
+/// The arrays alone, for vertices without coordinates; `at` says where a place is, if that is known.
+pub(super) fn arrays(mesh: &Mesh, at: impl Fn(Place) -> Vec<f64>) -> IndexReport {
     let complex = &mesh.complex;
     let n = complex.vertices;
     let mut report = IndexReport {
         vertices: n,
-        dimension: mesh.vertices.dimension(),
+        dimension: 0,
         triangles: complex.triangles.len(),
         curve_edges: complex.curve_edges.len(),
         violations: Vec::new(),
@@ -78,8 +93,6 @@ pub(super) fn check(mesh: &Mesh) -> IndexReport {
     if !report.usable {
         return report;
     }
-    let at = |place: Place| super::coordinates(mesh, place);
-
     let mut sorted: Vec<([u32; 3], u32)> = complex
         .triangles
         .iter()
@@ -98,7 +111,7 @@ pub(super) fn check(mesh: &Mesh) -> IndexReport {
         .collect();
     report
         .violations
-        .extend(Violation::at(ViolationKind::RepeatedTriangle, twice, at));
+        .extend(Violation::at(ViolationKind::RepeatedTriangle, twice, &at));
     let mut ends: Vec<([u32; 2], u32)> = complex
         .curve_edges
         .iter()
@@ -118,7 +131,7 @@ pub(super) fn check(mesh: &Mesh) -> IndexReport {
         .collect();
     report
         .violations
-        .extend(Violation::at(ViolationKind::RepeatedCurveEdge, twice, at));
+        .extend(Violation::at(ViolationKind::RepeatedCurveEdge, twice, &at));
 
     let mut used = vec![false; n];
     let corners = complex.triangles.iter().flatten();
@@ -131,12 +144,7 @@ pub(super) fn check(mesh: &Mesh) -> IndexReport {
         .collect();
     report
         .violations
-        .extend(Violation::at(ViolationKind::IsolatedVertex, isolated, at));
-    report.violations.extend(Violation::at(
-        ViolationKind::CoincidentVertices,
-        coincident(mesh),
-        at,
-    ));
+        .extend(Violation::at(ViolationKind::IsolatedVertex, isolated, &at));
     report
 }
 

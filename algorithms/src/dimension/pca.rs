@@ -94,6 +94,16 @@ impl<S: Scalar> DimensionEstimator for PrincipalComponents<S> {
         })
     }
 
+    fn of_variances(&self, variances: &[f64]) -> Option<DimensionEstimate> {
+        let (dimension, value, confidence) = self.dimension_of(variances);
+        Some(DimensionEstimate {
+            dimension,
+            value,
+            confidence,
+            spectrum: variances.to_vec(),
+        })
+    }
+
     fn name(&self) -> &str {
         "pca"
     }

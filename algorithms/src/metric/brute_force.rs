@@ -1,6 +1,6 @@
 //! Neighborhoods in any metric space, by looking at every point.
 
-use crosscap_core::{MetricSpace, Neighbor, NeighborhoodOracle};
+use crosscap_core::{MetricSpace, Neighbor, NeighborhoodOracle, Scalar};
 
 /// Neighborhoods in any [`MetricSpace`], by a scan over all points: the reference that every other
 /// oracle must equal, and good enough for a few thousand points. `O(n)` distances a query.
@@ -58,17 +58,22 @@ impl<M: MetricSpace> NeighborhoodOracle for BruteForceOracle<M> {
     fn nearest(&self, center: usize, count: usize, out: &mut Vec<Neighbor<M::Scalar>>) {
         out.clear();
         out.extend(self.all(center));
+        if count < out.len() {
+            out.select_nth_unstable_by(count, before);
+            out.truncate(count);
+        }
         sort(out);
-        out.truncate(count);
     }
 }
 
-fn sort<S: PartialOrd>(neighbors: &mut [Neighbor<S>]) {
-    neighbors.sort_unstable_by(|a, b| {
-        (a.distance.partial_cmp(&b.distance))
-            .unwrap_or(std::cmp::Ordering::Equal)
-            .then(a.index.cmp(&b.index))
-    });
+fn sort<S: Scalar>(neighbors: &mut [Neighbor<S>]) {
+    neighbors.sort_unstable_by(before);
+}
+
+/// By distance, ties by index; what is no number comes last.
+fn before<S: Scalar>(a: &Neighbor<S>, b: &Neighbor<S>) -> std::cmp::Ordering {
+    let [x, y] = [a, b].map(|n| n.distance.as_f64().abs());
+    x.total_cmp(&y).then(a.index.cmp(&b.index))
 }
 
 #[cfg(test)]
@@ -78,7 +83,7 @@ mod tests {
     use super::super::{Euclidean, GivenDistances, Lifted};
     use super::*;
     use approx::AbsDiffEq;
-    use crosscap_core::{PointCloud, Scalar};
+    use crosscap_core::PointCloud;
     use proptest::prelude::*;
 
     /// The laws of a metric space, on every triple.

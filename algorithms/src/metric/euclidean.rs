@@ -43,6 +43,10 @@ impl<S: Scalar> MetricSpace for Euclidean<S> {
         S::of(self.cloud.squared_distance(a, b).sqrt())
     }
 
+    fn places(&self) -> Option<&PointCloud<S>> {
+        Some(&self.cloud)
+    }
+
     fn name(&self) -> &str {
         "euclidean"
     }

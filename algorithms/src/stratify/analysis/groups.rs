@@ -1,17 +1,12 @@
 //! Many points explained by few fits: the fit of a neighborhood says for all points near its
 //! center what a fit of their own would say.
 
-use super::analysis::{AnalysisOptions, Analyzer, Scratch, Verdict};
-use crate::audit::Faults;
+use super::AnalysisOptions;
+use super::explain::Verdict;
+use super::fitter::{Fitter, Scratch};
 use crate::execute;
-use crosscap_core::{Scalar, squared_distance};
+use crosscap_core::Scalar;
 
-/// Spacings of the centers of fits, as shares of the radius, one attempt after another for the
-/// points that are left over. At the end every one is the center of its own.
-const SPACINGS: [f64; 2] = [0.3, 0.12];
-/// A fit speaks for points this close to its center, as a share of its radius, which may have
-/// shrunk.
-pub(super) const SPEAKS_FOR: f64 = 0.42;
 /// Fits that a job takes at a time.
 const FITS_AT_ONCE: usize = 8;
 
@@ -24,7 +19,7 @@ pub(super) struct Asked {
     pub(super) neighbors: usize,
 }
 
-impl<S: Scalar> Analyzer<'_, S> {
+impl<S: Scalar> Fitter<'_, S> {
     /// Explains rows of one local `dimension`, `(row, verdict)` for each in any order. With `thorough` every row
     /// for which no fit of another speaks gets its own; without, it is left out.
     pub(super) fn explain_all(
@@ -33,20 +28,23 @@ impl<S: Scalar> Analyzer<'_, S> {
         dimension: usize,
         options: &AnalysisOptions,
         thorough: bool,
-        faults: &Faults,
     ) -> Vec<(usize, Verdict)> {
         self.sort(&mut asked);
         let mut out = Vec::with_capacity(asked.len());
         let mut place_of = vec![u32::MAX; self.cloud.len()];
         // A curve alone is not what fits speak for.
-        let spacings = if dimension > 2 { &SPACINGS[..] } else { &[] };
+        let spacings = if dimension > 2 {
+            &self.tuning.analysis.fit_spacings[..]
+        } else {
+            &[]
+        };
         for spacing in spacings {
             let groups = self.groups(&asked, spacing * options.eps, &mut place_of);
             let found = execute::map_blocks(
                 self.execute,
                 FITS_AT_ONCE,
                 groups.len(),
-                || Scratch::reporting(faults),
+                Scratch::default,
                 |scratch, g| {
                     let Group { center, others } = &groups[g];
                     self.explain(*center, others, dimension, options, scratch)
@@ -74,7 +72,7 @@ impl<S: Scalar> Analyzer<'_, S> {
                 self.execute,
                 FITS_AT_ONCE,
                 asked.len(),
-                || Scratch::reporting(faults),
+                Scratch::default,
                 |scratch, k| {
                     self.explain(asked[k].row, &[], dimension, options, scratch)
                         .0
@@ -117,15 +115,14 @@ impl<S: Scalar> Analyzer<'_, S> {
                 continue;
             }
             let center = asked[k].row;
-            self.oracle
-                .indices_within(center, S::of(spacing), &mut near);
+            let oracle = self.space.oracle();
+            oracle.indices_within(center, S::of(spacing), &mut near);
             for &row in &near {
                 let at = place_of[row as usize];
                 if at == u32::MAX {
                     continue;
                 }
-                let square =
-                    squared_distance(self.cloud.point(center), self.cloud.point(row as usize));
+                let square = self.space.square(center, row as usize);
                 if square < owner[at as usize].0 {
                     owner[at as usize] = (square, groups.len() as u32);
                 }

@@ -1,0 +1,149 @@
+//! Balls of the space with the coordinates that models are fitted in.
+
+use super::ledger::{Ledger, ModelCounts};
+use super::{Analyzer, Dimensions};
+use crate::audit::Faults;
+use crate::execute::Execute;
+use crate::principal::PrincipalFrame;
+use crate::space::Space;
+use crate::stratify::tuning::Tuning;
+use crosscap_core::{LocalPoints, Neighbor, PointCloud, Scalar, SingularityModel};
+
+/// An [`Analyzer`] on a space that has coordinates. Everything that fits a model goes through it.
+pub(in crate::stratify) struct Fitter<'a, S: Scalar> {
+    pub(in crate::stratify) space: Space<'a, S>,
+    pub(in crate::stratify) cloud: &'a PointCloud<S>,
+    pub(super) dimensions: Dimensions<'a, S>,
+    pub(in crate::stratify) models: &'a [Box<dyn SingularityModel>],
+    pub(in crate::stratify) execute: &'a dyn Execute,
+    pub(in crate::stratify) tuning: &'a Tuning,
+    /// What models returned that cannot be used.
+    pub(in crate::stratify) faults: Faults,
+    pub(super) ledger: Ledger,
+}
+
+/// Buffers of one thread.
+pub(in crate::stratify) struct Scratch<S> {
+    pub(in crate::stratify) near: Vec<Neighbor<S>>,
+    rest: Vec<Neighbor<S>>,
+    pub(in crate::stratify) local: Vec<f64>,
+}
+
+impl<S> Default for Scratch<S> {
+    fn default() -> Self {
+        Self {
+            near: Vec::new(),
+            rest: Vec::new(),
+            local: Vec::new(),
+        }
+    }
+}
+
+/// A ball with its frame.
+pub(in crate::stratify) struct View {
+    pub(super) frame: PrincipalFrame,
+    /// Position of the center, which is among those that are fitted.
+    pub(super) center: usize,
+    /// How many points are fitted.
+    pub(super) fitted: usize,
+    /// Points in the ball.
+    pub(super) within: usize,
+    pub(super) radius: f64,
+}
+
+impl<'a, S: Scalar> Fitter<'a, S> {
+    pub(super) fn new(analyzer: &Analyzer<'a, S>, cloud: &'a PointCloud<S>) -> Self {
+        Self {
+            space: analyzer.space,
+            cloud,
+            dimensions: analyzer.dimensions,
+            models: analyzer.models,
+            execute: analyzer.execute,
+            tuning: analyzer.tuning,
+            faults: Faults::default(),
+            ledger: Ledger::new(analyzer.models.len()),
+        }
+    }
+
+    /// What became of every model so far.
+    pub(super) fn counts(&self) -> Vec<ModelCounts> {
+        self.ledger.counts(self.models)
+    }
+
+    /// Whether a model knows of curves that no surface touches.
+    pub(super) fn knows_bare_curves(&self) -> bool {
+        self.models.iter().any(|m| m.applies_to(1))
+    }
+
+    /// The rows closer to one than `radius`, nearest first.
+    pub(in crate::stratify) fn around(&self, row: usize, radius: f64, near: &mut Vec<usize>) {
+        let mut found = Vec::new();
+        self.space.oracle().within(row, S::of(radius), &mut found);
+        near.clear();
+        near.extend(found.iter().map(|x| x.index));
+    }
+
+    /// The ball of radius `reach` around `i` in the frame of the ball of `radius`.
+    ///
+    /// The rows that are fitted come first: all of the smaller ball, or every few of it by
+    /// distance, since a fit does not get better for more than a few hundred points.
+    pub(super) fn view(
+        &self,
+        i: usize,
+        radius: f64,
+        reach: f64,
+        scratch: &mut Scratch<S>,
+    ) -> Option<View> {
+        let Scratch { near, rest, .. } = scratch;
+        self.space.oracle().within(i, S::of(reach), near);
+        // Neighbors come sorted by distance.
+        let within = near.partition_point(|x| x.distance < S::of(radius));
+        let stride = within.div_ceil(self.tuning.analysis.most_fitted);
+        let mut fitted = within;
+        if stride > 1 {
+            rest.clear();
+            fitted = 0;
+            for k in 0..near.len() {
+                let x = near[k];
+                if k < within && (k % stride == 0 || x.index == i) {
+                    near[fitted] = x;
+                    fitted += 1;
+                } else {
+                    rest.push(x);
+                }
+            }
+            near.truncate(fitted);
+            near.extend_from_slice(rest);
+        }
+        let rows = near[..fitted].iter().map(|x| x.index);
+        Some(View {
+            frame: PrincipalFrame::of(self.cloud, rows),
+            center: near[..fitted].iter().position(|x| x.index == i)?,
+            fitted,
+            within,
+            radius,
+        })
+    }
+
+    /// The points of a view in the coordinates that a model works in.
+    pub(super) fn local<'s>(
+        &self,
+        view: &View,
+        model: &dyn SingularityModel,
+        scratch: &'s mut Scratch<S>,
+    ) -> LocalPoints<'s> {
+        let dimension = model.local_dimension();
+        scratch.local.clear();
+        for x in &scratch.near {
+            let place = self.cloud.point(x.index);
+            view.frame.project(place, dimension, &mut scratch.local);
+        }
+        LocalPoints {
+            dimension,
+            coordinates: &scratch.local,
+            fitted: view.fitted,
+            center: view.center,
+            radius: view.radius,
+        }
+    }
+}

@@ -1,0 +1,360 @@
+//! The landmarks around each landmark, in each of its cells.
+
+use super::NONE;
+use super::contacts::{Contacts, Hits};
+use super::graph::CellGraph;
+use super::labels::Labels;
+use super::plain::{self, Surroundings};
+use super::region::Region;
+use crate::execute;
+use crate::space::Space;
+use crate::stratify::analysis::Analyzer;
+use crate::stratify::atlas::Reference;
+use crate::stratify::skeleton::Skeleton;
+use crate::stratify::strata::Strata;
+use crate::stratify::waist::ChartSpace;
+use crosscap_core::{
+    CellNeighborhood, Error, Neighbor, NeighborhoodOracle, PointCloud, Scalar, squared_distance,
+};
+
+/// Floods that a job takes at a time.
+const FLOODS_AT_ONCE: usize = 32;
+
+/// All that neighborhoods are found from.
+pub(in crate::stratify) struct Neighborhoods<'n, 'a, S: Scalar> {
+    pub(in crate::stratify) analyzer: &'n Analyzer<'a, S>,
+    pub(in crate::stratify) strata: &'n Strata,
+    pub(in crate::stratify) skeleton: &'n Skeleton,
+    pub(in crate::stratify) labels: &'n Labels,
+    pub(in crate::stratify) contacts: &'n Contacts,
+    /// What measures the charts.
+    pub(in crate::stratify) charts: ChartSpace<'a, S>,
+    /// Rows of the landmarks, those of the skeleton first.
+    pub(in crate::stratify) rows: &'n [usize],
+    /// Radius of the charts.
+    pub(in crate::stratify) reach: f64,
+    pub(in crate::stratify) dl: f64,
+}
+
+/// A neighborhood to be found: that of a landmark of a cell, or of one cell at a curve landmark.
+struct Job {
+    landmark: usize,
+    group: Option<usize>,
+}
+
+/// What has been found so far.
+struct Progress {
+    jobs: Vec<Job>,
+    members: Vec<Option<Vec<u32>>>,
+}
+
+/// The extent of one chart: which nodes of the graph and which landmarks are in it, how far from its center.
+enum Extent<'e, S: Scalar> {
+    Places {
+        places: &'e PointCloud<f64>,
+        origin: &'e [f64],
+        square: f64,
+    },
+    Metric(&'e Ball<S>),
+}
+
+/// What measures charts.
+enum Measure<'m, 'a, S: Scalar> {
+    Places(&'m PointCloud<f64>),
+    Metric(&'m Space<'a, S>),
+}
+
+impl<S: Scalar> Extent<'_, S> {
+    fn holds_node(&self, graph: &CellGraph, node: usize) -> bool {
+        match self {
+            // Places of nodes lie together in memory.
+            Self::Places { origin, square, .. } => {
+                squared_distance(origin, graph.place(node)) < *square
+            }
+            Self::Metric(ball) => ball.holds(graph.row(node)),
+        }
+    }
+
+    fn holds(&self, row: usize) -> bool {
+        match self {
+            Self::Places { square, .. } => self.rank(row) < *square,
+            Self::Metric(ball) => ball.holds(row),
+        }
+    }
+
+    /// A number that orders rows by their distance from the center.
+    fn rank(&self, row: usize) -> f64 {
+        match self {
+            Self::Places { places, origin, .. } => squared_distance(origin, places.point(row)),
+            Self::Metric(ball) => ball.distance(row),
+        }
+    }
+}
+
+impl<S: Scalar> Neighborhoods<'_, '_, S> {
+    /// The neighborhoods, landmarks of cells first, and how many edges of the graph were cut.
+    pub(in crate::stratify) fn find(&self) -> Result<(Vec<CellNeighborhood>, usize), Error> {
+        let jobs = self.jobs();
+        let members = self.plain(&jobs)?;
+        let mut progress = Progress { jobs, members };
+        let cut = self.flood(&mut progress)?;
+        let Progress { jobs, members } = progress;
+        let all = jobs.iter().zip(members).map(|(job, members)| {
+            let center = job.landmark as u32;
+            let others = members.unwrap_or_default();
+            CellNeighborhood {
+                center,
+                members: std::iter::once(center).chain(others).collect(),
+            }
+        });
+        Ok((all.collect(), cut))
+    }
+
+    fn jobs(&self) -> Vec<Job> {
+        let own = (self.skeleton.rows().len()..self.rows.len()).map(|landmark| Job {
+            landmark,
+            group: None,
+        });
+        let groups = self.contacts.groups.iter().enumerate();
+        own.chain(groups.map(|(g, group)| Job {
+            landmark: group.landmark,
+            group: Some(g),
+        }))
+        .collect()
+    }
+
+    /// Neighborhoods of one sheet without a curve, where nearness alone says what belongs together.
+    fn plain(&self, jobs: &[Job]) -> Result<Vec<Option<Vec<u32>>>, Error> {
+        if let ChartSpace::Metric(_) = self.charts {
+            return Ok(jobs.iter().map(|_| None).collect());
+        }
+        let tuning = &self.analyzer.tuning.cells;
+        let places = self.places()?;
+        let width = places.dimension();
+        let mut landmarks = Vec::with_capacity(self.rows.len() * width);
+        for &row in self.rows {
+            landmarks.extend_from_slice(places.point(row));
+        }
+        let mut on_curves = landmarks[..self.skeleton.rows().len() * width].to_vec();
+        for fit in self.skeleton.labelling() {
+            on_curves.extend_from_slice(places.point(fit.row));
+        }
+        let gap = tuning.curve_gap * self.dl;
+        let around = Surroundings::new(width, landmarks, &on_curves, gap, self.dl);
+        let find = |scratch: &mut plain::Scratch, j: usize| {
+            if jobs[j].group.is_some() {
+                return None;
+            }
+            let landmark = jobs[j].landmark as u32;
+            let mut radius = self.reach;
+            let mut members = around.near(landmark, radius);
+            for _ in 0..tuning.widenings {
+                if members.len() >= tuning.least_members {
+                    break;
+                }
+                radius *= tuning.widening;
+                members = around.near(landmark, radius);
+            }
+            let center = self.rows[jobs[j].landmark];
+            let far = |k: u32| places.squared_distance(center, self.rows[k as usize]);
+            around
+                .is_plain(landmark, radius, &members, scratch)
+                .then(|| nearest_first(members, far))
+        };
+        Ok(execute::map(
+            self.analyzer.execute,
+            jobs.len(),
+            Default::default,
+            find,
+        ))
+    }
+
+    /// Floods from every landmark that is left, in charts that are widened where they hold few members.
+    /// Returns how many edges of the first graph were cut.
+    fn flood(&self, progress: &mut Progress) -> Result<usize, Error> {
+        let tuning = &self.analyzer.tuning.cells;
+        let Progress { jobs, members } = progress;
+        let mut landmark_at = vec![NONE; self.strata.len()];
+        for (k, &row) in self.rows.iter().enumerate() {
+            landmark_at[row] = k as u32;
+        }
+        let mut pending: Vec<usize> = (0..jobs.len()).filter(|&j| members[j].is_none()).collect();
+        let mut radius = self.reach;
+        let mut cut = None;
+        // The last graph, and how far it reaches about every landmark.
+        let mut known: Option<(CellGraph, Vec<f64>)> = None;
+        for widening in 0..=tuning.widenings {
+            if pending.is_empty() {
+                break;
+            }
+            let sufficient = known
+                .take()
+                .filter(|(_, reach)| pending.iter().all(|&j| reach[jobs[j].landmark] >= radius));
+            let (graph, reach) = match sufficient {
+                Some(known) => known,
+                None => self.graph(jobs, &pending, radius)?,
+            };
+            cut.get_or_insert(graph.cut);
+            let flooded = self.flooded(&graph, jobs, &pending, radius, &landmark_at)?;
+            let mut thin = Vec::new();
+            for (&j, found) in pending.iter().zip(flooded) {
+                if found.len() >= tuning.least_members || widening == tuning.widenings {
+                    members[j] = Some(found);
+                } else {
+                    thin.push(j);
+                }
+            }
+            pending = thin;
+            radius *= tuning.widening;
+            known = Some((graph, reach));
+        }
+        Ok(cut.unwrap_or(0))
+    }
+
+    /// A graph that holds the charts of the jobs that are pending, and how far it reaches about every landmark.
+    fn graph(
+        &self,
+        jobs: &[Job],
+        pending: &[usize],
+        radius: f64,
+    ) -> Result<(CellGraph, Vec<f64>), Error> {
+        let Analyzer {
+            space,
+            execute,
+            tuning,
+            ..
+        } = self.analyzer;
+        let fits: Vec<&Reference> = self.skeleton.labelling().collect();
+        let (region, reach) = match self.charts {
+            // Nothing is known of how far a chart reaches in straight lines.
+            ChartSpace::Metric(_) => (
+                Region::everything(self.strata.len(), self.dl),
+                vec![f64::INFINITY; self.rows.len()],
+            ),
+            ChartSpace::Places => {
+                let mut reach = vec![0.0_f64; self.rows.len()];
+                for &j in pending {
+                    // Where curves cut charts they are likely to be widened.
+                    let spare = match jobs[j].group {
+                        Some(_) => tuning.cells.widening,
+                        None => 1.0,
+                    };
+                    reach[jobs[j].landmark] = spare * radius;
+                }
+                let all = self.rows.iter().copied().zip(reach.iter().copied());
+                let centers: Vec<(usize, f64)> = all.filter(|x| x.1 > 0.0).collect();
+                let cloud = space.coordinates("since charts are laid in them")?;
+                let places = self.places()?;
+                let region = Region::about(cloud, places, &centers, self.dl, *execute);
+                (region, reach)
+            }
+        };
+        let separated = |i: usize, j: usize| self.labels.separated(&fits, i, j);
+        let graph = CellGraph::new(space, self.strata, separated, &region, *execute)?;
+        Ok((graph, reach))
+    }
+
+    fn flooded(
+        &self,
+        graph: &CellGraph,
+        jobs: &[Job],
+        pending: &[usize],
+        radius: f64,
+        landmark_at: &[u32],
+    ) -> Result<Vec<Vec<u32>>, Error> {
+        let measure = self.measure()?;
+        let held = match measure {
+            Measure::Places(_) => 0,
+            Measure::Metric(_) => self.strata.len(),
+        };
+        Ok(execute::map_blocks(
+            self.analyzer.execute,
+            FLOODS_AT_ONCE,
+            pending.len(),
+            || (Hits::new(self.contacts), Ball::new(held)),
+            |(hits, ball), p| {
+                let job = &jobs[pending[p]];
+                let center = self.rows[job.landmark];
+                let own = [center as u32];
+                let from = job
+                    .group
+                    .map_or(&own[..], |g| &self.contacts.groups[g].rows);
+                let extent = match measure {
+                    Measure::Places(places) => Extent::Places {
+                        places,
+                        origin: places.point(center),
+                        square: radius * radius,
+                    },
+                    Measure::Metric(space) => {
+                        ball.fill(space.oracle(), center, radius);
+                        Extent::Metric(ball)
+                    }
+                };
+                hits.flood
+                    .run(graph, from, |node| extent.holds_node(graph, node));
+                let inside = |k: usize| extent.holds(self.rows[k]);
+                let found = hits.members(self.contacts, landmark_at, job.landmark, inside);
+                nearest_first(found, |k| extent.rank(self.rows[k as usize]))
+            },
+        ))
+    }
+
+    fn measure(&self) -> Result<Measure<'_, '_, S>, Error> {
+        Ok(match &self.charts {
+            ChartSpace::Places => Measure::Places(self.places()?),
+            ChartSpace::Metric(space) => Measure::Metric(space),
+        })
+    }
+
+    fn places(&self) -> Result<&PointCloud<f64>, Error> {
+        self.strata.places().ok_or_else(|| Error::Shape {
+            found: "points without coordinates".into(),
+            expected: "coordinates, or a metric for the charts".into(),
+        })
+    }
+}
+
+/// The points of a ball with their distances from its center, reusable.
+struct Ball<S> {
+    found: Vec<Neighbor<S>>,
+    stamps: Vec<u32>,
+    distances: Vec<f64>,
+    round: u32,
+}
+
+impl<S: Scalar> Ball<S> {
+    fn new(n: usize) -> Self {
+        Self {
+            found: Vec::new(),
+            stamps: vec![0; n],
+            distances: vec![0.0; n],
+            round: 0,
+        }
+    }
+
+    fn fill(&mut self, oracle: &dyn NeighborhoodOracle<Scalar = S>, center: usize, radius: f64) {
+        self.round += 1;
+        oracle.within(center, S::of(radius), &mut self.found);
+        for x in &self.found {
+            self.stamps[x.index] = self.round;
+            self.distances[x.index] = x.distance.as_f64();
+        }
+    }
+
+    fn holds(&self, row: usize) -> bool {
+        self.stamps[row] == self.round
+    }
+
+    /// Distance of a point that the ball holds.
+    fn distance(&self, row: usize) -> f64 {
+        self.distances[row]
+    }
+}
+
+/// Landmarks in order of their distance, ties by index, each once.
+fn nearest_first(members: Vec<u32>, far: impl Fn(u32) -> f64) -> Vec<u32> {
+    let mut ranked: Vec<(f64, u32)> = members.into_iter().map(|k| (far(k), k)).collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    ranked.dedup();
+    ranked.into_iter().map(|x| x.1).collect()
+}

@@ -1,0 +1,99 @@
+//! Distances of landmarks that are in one chart.
+
+use super::analysis::Analyzer;
+use super::strata::Strata;
+use super::waist::ChartSpace;
+use crate::audit;
+use crate::execute::{self, Execute};
+use crosscap_core::{CellNeighborhood, Error, MetricSpace, Scalar, SparseDistances};
+
+/// The distances of all members of each neighborhood, of landmarks that stand for `rows`.
+pub(super) fn within_charts<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    strata: &Strata,
+    charts: &ChartSpace<'_, S>,
+    rows: &[usize],
+    neighborhoods: &[CellNeighborhood],
+) -> Result<SparseDistances<S>, Error> {
+    match charts {
+        ChartSpace::Places => {
+            let places = strata.places().ok_or_else(|| Error::Shape {
+                found: "points without coordinates".into(),
+                expected: "coordinates, or a metric for the charts".into(),
+            })?;
+            SparseDistances::within(rows.len(), neighborhoods, |a, b| {
+                let (p, q) = (rows[a as usize], rows[b as usize]);
+                S::of(places.squared_distance(p, q).sqrt())
+            })
+        }
+        ChartSpace::Metric(space) => {
+            let pairs = pairs(neighborhoods.iter().map(|x| &x.members[..]));
+            let mut lengths = lengths(analyzer.execute, space.metric(), rows, &pairs)?;
+            add_moves(analyzer, strata, rows, &pairs, &mut lengths);
+            let entries = pairs.iter().zip(&lengths).map(|(&(a, b), &d)| (a, b, d));
+            SparseDistances::new(rows.len(), entries)
+        }
+    }
+}
+
+/// All pairs of members of the same neighborhood, sorted.
+pub(super) fn pairs<'m>(neighborhoods: impl Iterator<Item = &'m [u32]>) -> Vec<(u32, u32)> {
+    let mut pairs: Vec<(u32, u32)> = Vec::new();
+    for members in neighborhoods {
+        for (i, &a) in members.iter().enumerate() {
+            pairs.extend(members[..i].iter().map(|&b| (a.min(b), a.max(b))));
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// Distances of sorted pairs of landmarks in a metric, asked for row by row.
+///
+/// # Errors
+/// [`Error::Law`] for one that is NaN or negative.
+pub(super) fn lengths<S: Scalar>(
+    execute: &dyn Execute,
+    metric: &dyn MetricSpace<Scalar = S>,
+    rows: &[usize],
+    pairs: &[(u32, u32)],
+) -> Result<Vec<S>, Error> {
+    let runs: Vec<&[(u32, u32)]> = pairs.chunk_by(|x, y| x.0 == y.0).collect();
+    let lengths = execute::map(execute, runs.len(), Vec::new, |targets, k| {
+        targets.clear();
+        targets.extend(runs[k].iter().map(|&(_, b)| rows[b as usize]));
+        let mut lengths = Vec::with_capacity(targets.len());
+        metric.distances_to(rows[runs[k][0].0 as usize], targets, &mut lengths);
+        lengths
+    });
+    let lengths: Vec<S> = lengths.into_iter().flatten().collect();
+    let wrong = |d: &S| !(d.is_finite() && *d >= S::zero());
+    if let Some(at) = lengths.iter().position(wrong) {
+        let [p, q] = [pairs[at].0, pairs[at].1].map(|k| rows[k as usize]);
+        audit::distance(metric, p, q)?;
+    }
+    Ok(lengths)
+}
+
+/// Where a landmark was moved onto a curve, adds what the move does to the straight line: a metric knows the
+/// points as they were.
+fn add_moves<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    strata: &Strata,
+    rows: &[usize],
+    pairs: &[(u32, u32)],
+    lengths: &mut [S],
+) {
+    let (Some(cloud), Some(places)) = (analyzer.space.places(), strata.places()) else {
+        return;
+    };
+    for (length, &(a, b)) in lengths.iter_mut().zip(pairs) {
+        let (p, q) = (rows[a as usize], rows[b as usize]);
+        if strata.moved(p) > 0.0 || strata.moved(q) > 0.0 {
+            let moved = places.squared_distance(p, q).sqrt();
+            let straight = cloud.squared_distance(p, q).sqrt();
+            *length = S::of((length.as_f64() + moved - straight).max(0.0));
+        }
+    }
+}

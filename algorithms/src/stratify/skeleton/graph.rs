@@ -1,0 +1,153 @@
+//! The graph of the points of a kind of curve, with the corners behind them.
+
+use super::ends::{bridges, free_ends};
+use super::nodes::Nodes;
+use super::sweep::components;
+use super::{Ground, Skeleton};
+use crate::stratify::site::StratumKind;
+use crosscap_core::Scalar;
+
+/// Nodes and corners, joined where a curve goes from one to the other.
+pub(super) struct CurveGraph {
+    pub(super) nodes: Nodes,
+    /// For every node, then every corner, those joined to it with their distances.
+    pub(super) links: Vec<Vec<(usize, f64)>>,
+    /// The connected parts, corners left out, each in order.
+    pub(super) parts: Vec<Vec<usize>>,
+}
+
+impl CurveGraph {
+    pub(super) fn new<S: Scalar>(
+        skeleton: &Skeleton,
+        ground: &Ground<'_, '_, S>,
+        nodes: Nodes,
+    ) -> Self {
+        let links = near_nodes(ground, &nodes);
+        let mut out = Self {
+            parts: components(&links, nodes.rows.len()),
+            nodes,
+            links,
+        };
+        out.join_corners(skeleton, ground);
+        out.bridge(ground);
+        out
+    }
+
+    /// The number of the first corner.
+    pub(super) fn first_corner(&self) -> usize {
+        self.nodes.rows.len()
+    }
+
+    /// Joins each corner to the nearest node of every branch. A part of a curve that does not reach
+    /// farther than dl from the corner is none: it has no room for a landmark, and would stand between
+    /// the corner and its curve.
+    fn join_corners<S: Scalar>(&mut self, skeleton: &Skeleton, ground: &Ground<'_, '_, S>) {
+        let rows = &self.nodes.rows;
+        let mut part = vec![usize::MAX; rows.len()];
+        for (p, members) in self.parts.iter().enumerate() {
+            members.iter().for_each(|&k| part[k] = p);
+        }
+        let reach = ground.tuning.join * ground.dl;
+        for &corner in &skeleton.rows[..skeleton.corners] {
+            let stub: Vec<bool> = (self.parts.iter())
+                .map(|members| {
+                    let near = |&k: &usize| ground.distance(corner, rows[k]) < ground.dl;
+                    members.iter().all(near)
+                })
+                .collect();
+            let mut branches: Vec<(u8, usize, f64)> = Vec::new();
+            for (k, &row) in rows.iter().enumerate() {
+                let d = ground.distance(corner, row);
+                if d > reach || stub[part[k]] {
+                    continue;
+                }
+                let Some(branch) = self.branch(skeleton, corner, k) else {
+                    continue;
+                };
+                match branches.iter_mut().find(|b| b.0 == branch) {
+                    Some(b) if d < b.2 => *b = (branch, k, d),
+                    Some(_) => {}
+                    None => branches.push((branch, k, d)),
+                }
+            }
+            let own = self.links.len();
+            self.links.push(Vec::new());
+            for (_, k, d) in branches {
+                self.links[own].push((k, d));
+                self.links[k].push((own, d));
+            }
+        }
+    }
+
+    /// The branch of a corner that a node is on; `None` for a node that is on none.
+    fn branch(&self, skeleton: &Skeleton, corner: usize, node: usize) -> Option<u8> {
+        let at_point = || {
+            skeleton
+                .corner_fits()
+                .any(|r| r.row == corner && r.has_points())
+        };
+        match (self.nodes.kind, self.nodes.branches[node]) {
+            (StratumKind::Boundary, found) => found.map(|(_, l)| l),
+            (_, Some((at, l))) if skeleton.corner_fit(at).row == corner => Some(l),
+            _ if at_point() => None,
+            _ => Some(0),
+        }
+    }
+
+    /// Joins ends that point at each other over a gap of the points.
+    fn bridge<S: Scalar>(&mut self, ground: &Ground<'_, '_, S>) {
+        let rows = &self.nodes.rows;
+        let first_corner = rows.len();
+        let distance = |a: usize, b: usize| ground.distance(rows[a], rows[b]);
+        // What is next to a bare curve says where it ends, and its points are joined over as much anyway.
+        let ends: Vec<Vec<usize>> = (self.parts.iter())
+            .filter(|members| members.iter().all(|&k| !self.nodes.is_bare(ground, k)))
+            .map(|members| free_ends(&self.links, members, first_corner, distance))
+            .collect();
+        let place = |k: usize| ground.places.point(rows[k]);
+        let parted = |a: usize, b: usize| self.nodes.parted(ground, a, b);
+        let reach = ground.tuning.bridge * ground.dl;
+        let bridges = bridges(&self.links, &ends, place, reach, parted);
+        for &(a, b, d) in &bridges {
+            self.links[a].push((b, d));
+            self.links[b].push((a, d));
+        }
+        if !bridges.is_empty() {
+            self.parts = components(&self.links, first_corner);
+        }
+    }
+}
+
+/// For every node the nodes that are near it on the same curve.
+fn near_nodes<S: Scalar>(ground: &Ground<'_, '_, S>, nodes: &Nodes) -> Vec<Vec<(usize, f64)>> {
+    let Ground {
+        strata, tuning, dl, ..
+    } = *ground;
+    let rows = &nodes.rows;
+    let mut at = vec![usize::MAX; strata.len()];
+    for (k, &row) in rows.iter().enumerate() {
+        at[row] = k;
+    }
+    let slack = 2.0 * rows.iter().map(|&r| strata.moved(r)).fold(0.0, f64::max);
+    let mut links: Vec<Vec<(usize, f64)>> = vec![Vec::new(); rows.len()];
+    let mut near = Vec::new();
+    for (k, &row) in rows.iter().enumerate() {
+        let reach = if nodes.is_bare(ground, k) {
+            tuning.bare_reach * dl
+        } else {
+            tuning.reach * dl
+        };
+        ground.fitter.around(row, reach + slack, &mut near);
+        for &x in &near {
+            let other = at[x];
+            if other == usize::MAX || other == k {
+                continue;
+            }
+            let d = ground.distance(row, x);
+            if d <= reach && !nodes.parted(ground, k, other) {
+                links[k].push((other, d));
+            }
+        }
+    }
+    links
+}

@@ -1,0 +1,166 @@
+//! The skeleton: landmarks on points and along curves, and the chains that join them.
+//!
+//! Points come first, then boundaries, then curves. The points of a curve that was found are a band;
+//! a thinned set of them are the nodes of a graph, the graph falls into parts (one curve each), and along
+//! each part landmarks are laid at a separation that closes it well.
+
+mod ends;
+mod graph;
+mod join;
+mod lay;
+mod nodes;
+mod sweep;
+mod thin;
+
+use super::analysis::{Analyzer, Fitter};
+use super::atlas::{Atlas, FitId, Reference};
+use super::site::StratumKind;
+use super::strata::Strata;
+use super::tuning::SkeletonTuning;
+use super::waist::PointStratum;
+use crosscap_core::{CurveEdge, Error, PointCloud, Scalar};
+use thin::thin;
+
+/// Landmarks on points and curves, with the chains.
+#[derive(Default)]
+pub(super) struct Skeleton {
+    /// Rows of the landmarks, points first.
+    rows: Vec<usize>,
+    /// How many of them are points.
+    corners: usize,
+    /// How many cells meet in the curve of each landmark, in the order of `rows`; 0 for points.
+    cells: Vec<u8>,
+    /// Chain edges between positions in `rows`.
+    edges: Vec<CurveEdge>,
+    /// All fits.
+    atlas: Atlas,
+    /// Those about points, in the order of `rows`, where there is one.
+    corner_fits: Vec<FitId>,
+    /// Those that label the points of the cloud.
+    labelling: Vec<FitId>,
+}
+
+/// What the skeleton is laid on.
+struct Ground<'g, 'a, S: Scalar> {
+    fitter: &'g Fitter<'a, S>,
+    strata: &'g Strata,
+    places: &'g PointCloud<f64>,
+    tuning: &'g SkeletonTuning,
+    dl: f64,
+}
+
+impl<S: Scalar> Ground<'_, '_, S> {
+    /// Distance of the places of two rows.
+    fn distance(&self, a: usize, b: usize) -> f64 {
+        self.places.squared_distance(a, b).sqrt()
+    }
+}
+
+impl Skeleton {
+    /// Lays landmarks and chains over the strata, and makes the fits that label the points around.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for strata in a space without coordinates, [`Error::Law`] for what a model breaks.
+    pub(super) fn lay<S: Scalar>(
+        analyzer: &Analyzer<'_, S>,
+        strata: &Strata,
+        dl: f64,
+    ) -> Result<Self, Error> {
+        let mut out = Self::default();
+        let (Some(places), true) = (
+            strata.places(),
+            strata.sites().iter().any(|site| site.on().is_some()),
+        ) else {
+            return Ok(out);
+        };
+        let fitter = analyzer.fitter("since curves are laid in them")?;
+        let ground = Ground {
+            fitter: &fitter,
+            strata,
+            places,
+            tuning: &analyzer.tuning.skeleton,
+            dl,
+        };
+        out.rows = thin(&ground, dl, StratumKind::Point);
+        out.corners = out.rows.len();
+        out.cells = vec![0; out.corners];
+        out.atlas.fit(&fitter, strata, &out.rows);
+        out.corner_fits = out.atlas.about_all(&out.rows);
+        for kind in [StratumKind::Boundary, StratumKind::Curve] {
+            out.lay_kind(&ground, kind);
+        }
+        out.join_free_ends(&ground);
+        out.edges.sort_unstable();
+        out.edges.dedup_by_key(|e| e.ends);
+        out.label(&ground);
+        fitter.faults.none()?;
+        Ok(out)
+    }
+
+    /// Makes the fits that label points: about every landmark, and along the curves between them.
+    fn label<S: Scalar>(&mut self, ground: &Ground<'_, '_, S>) {
+        let strata = ground.strata;
+        let fitted: Vec<usize> = (self.rows.iter().copied())
+            .filter(|&r| strata.radius(r).is_some())
+            .collect();
+        self.atlas.fit(ground.fitter, strata, &fitted);
+        self.labelling = self.atlas.about_all(&fitted);
+        let radii = fitted.iter().filter_map(|&r| strata.radius(r));
+        let least = radii.fold(f64::INFINITY, f64::min);
+        if !least.is_finite() {
+            return;
+        }
+        let known: Vec<usize> = self.labelling().map(|r| r.row).collect();
+        let spacing = ground.tuning.label_spacing * least;
+        let mut more = thin(ground, spacing, StratumKind::Curve);
+        more.retain(|row| !known.contains(row));
+        self.atlas.fit(ground.fitter, strata, &more);
+        self.labelling.extend(self.atlas.about_all(&more));
+    }
+
+    /// Rows of the landmarks, points first.
+    pub(super) fn rows(&self) -> &[usize] {
+        &self.rows
+    }
+
+    /// How many of the landmarks are points.
+    pub(super) fn corners(&self) -> usize {
+        self.corners
+    }
+
+    /// Chain edges between positions in [`rows`](Self::rows).
+    pub(super) fn edges(&self) -> &[CurveEdge] {
+        &self.edges
+    }
+
+    /// The fits that label the points of the cloud.
+    pub(super) fn labelling(&self) -> impl Iterator<Item = &Reference> {
+        self.labelling.iter().map(|&id| self.atlas.get(id))
+    }
+
+    /// The fits about points.
+    fn corner_fits(&self) -> impl Iterator<Item = &Reference> {
+        self.corner_fits.iter().map(|&id| self.atlas.get(id))
+    }
+
+    /// The `k`-th of the fits about points.
+    fn corner_fit(&self, k: usize) -> &Reference {
+        self.atlas.get(self.corner_fits[k])
+    }
+
+    /// The points that models call 0-strata.
+    pub(super) fn points(&self) -> Vec<PointStratum> {
+        self.corner_fits()
+            .filter(|r| r.has_points())
+            .filter_map(|r| {
+                let landmark = self.rows[..self.corners].iter().position(|&c| c == r.row)?;
+                let count = |d| r.fit.strata.iter().filter(|s| s.dimension == d).count();
+                Some(PointStratum {
+                    landmark: landmark as u32,
+                    curves: count(1),
+                    cells: count(2),
+                })
+            })
+            .collect()
+    }
+}

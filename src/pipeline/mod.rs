@@ -1,0 +1,220 @@
+//! From a point cloud to a verified surface: the parts put together with good defaults.
+
+mod mesh;
+mod parameters;
+mod progress;
+mod report;
+mod rows;
+mod run;
+
+pub use parameters::{Method, Parameters};
+pub use progress::Stage;
+pub use report::{Outcome, Report};
+pub(crate) use run::Input;
+
+use crate::spaces::{Custom, Warning};
+use crosscap_algorithms::chart::ClassicalScaling;
+use crosscap_algorithms::landmarks::RandomGreedy;
+use crosscap_algorithms::predicate::PlanarPredicate;
+use crosscap_algorithms::stratify::Tuning;
+use crosscap_algorithms::triangulate::{
+    LargestAngle, MinimumCircumradius, Rules, Triangulation, Triangulator,
+};
+use crosscap_core::{
+    CompatibilityTest, DimensionEstimator, Error, LandmarkSelector, LocalChart, MetricSpace,
+    NeighborhoodOracle, PointCloud, SingularityModel, StratifiedLandmarks, TriangleRule,
+};
+use progress::StageObserver;
+
+/// Called for every warning.
+type WarningObserver = Box<dyn FnMut(&Warning)>;
+
+/// A reconstruction put together from parts, each of which can be replaced.
+///
+/// ```
+/// use crosscap::prelude::*;
+/// let sample = SampleSurface::find("sphere")?.sample(&Sampling::new(4000, 7))?;
+/// let outcome = Pipeline::new(Parameters::new(0.4, 0.2).surface())?.reconstruct(&sample.points)?;
+/// assert!(outcome.is_verified());
+/// assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Pipeline {
+    parts: Parts,
+    observer: StageObserver,
+    warned: WarningObserver,
+}
+
+/// What a reconstruction is put together from.
+struct Parts {
+    parameters: Parameters,
+    tuning: Tuning,
+    models: Vec<Box<dyn SingularityModel>>,
+    estimator: Option<Box<dyn DimensionEstimator<Scalar = f64>>>,
+    selector: Box<dyn LandmarkSelector<Scalar = f64>>,
+    chart: Box<dyn LocalChart>,
+    test: Box<dyn CompatibilityTest>,
+    rule: Box<dyn TriangleRule>,
+    oracle: Option<Box<dyn NeighborhoodOracle<Scalar = f64>>>,
+    analysis_metric: Option<Custom>,
+    chart_metric: Option<Custom>,
+}
+
+impl Pipeline {
+    /// The default parts for these parameters: PCA, two planes, random landmarks, classical
+    /// scaling, exact planar predicate, largest angle.
+    ///
+    /// # Errors
+    /// Those of [`Parameters::check`].
+    pub fn new(parameters: Parameters) -> Result<Self, Error> {
+        parameters.check()?;
+        let parts = Parts {
+            models: parameters
+                .models
+                .iter()
+                .map(|name| name.model(parameters.dp, parameters.ep))
+                .collect::<Result<_, _>>()?,
+            estimator: None,
+            selector: Box::new(RandomGreedy::new()),
+            chart: Box::new(ClassicalScaling),
+            test: Box::new(PlanarPredicate),
+            rule: Box::new(LargestAngle),
+            oracle: None,
+            analysis_metric: None,
+            chart_metric: None,
+            tuning: Tuning::MEASURED,
+            parameters,
+        };
+        Ok(Self {
+            parts,
+            observer: Box::new(|_| {}),
+            warned: Box::new(|_| {}),
+        })
+    }
+
+    /// Singularity models that compete instead of those that the parameters name.
+    pub fn models(mut self, models: Vec<Box<dyn SingularityModel>>) -> Self {
+        self.parts.models = models;
+        self
+    }
+
+    /// Another dimension estimator than principal components with tolerance dt, which is
+    /// computed for all points together from the moments of a search tree.
+    pub fn estimator(mut self, estimator: Box<dyn DimensionEstimator<Scalar = f64>>) -> Self {
+        self.parts.estimator = Some(estimator);
+        self
+    }
+
+    /// Another landmark selector.
+    pub fn selector(mut self, selector: Box<dyn LandmarkSelector<Scalar = f64>>) -> Self {
+        self.parts.selector = selector;
+        self
+    }
+
+    /// Another chart.
+    pub fn chart(mut self, chart: Box<dyn LocalChart>) -> Self {
+        self.parts.chart = chart;
+        self
+    }
+
+    /// Another compatibility test.
+    pub fn compatibility(mut self, test: Box<dyn CompatibilityTest>) -> Self {
+        self.parts.test = test;
+        self
+    }
+
+    /// Another order in which triangles are tried.
+    pub fn rule(mut self, rule: Box<dyn TriangleRule>) -> Self {
+        self.parts.rule = rule;
+        self
+    }
+
+    /// What finds neighborhoods in the metric of the analysis, instead of a search tree or a scan: an oracle
+    /// of your own over the rows of the input, of which no two may coincide.
+    pub fn oracle(mut self, oracle: Box<dyn NeighborhoodOracle<Scalar = f64>>) -> Self {
+        self.parts.oracle = Some(oracle);
+        self
+    }
+
+    /// Other numbers than those that the program runs with.
+    pub fn tuning(mut self, tuning: Tuning) -> Self {
+        self.parts.tuning = tuning;
+        self
+    }
+
+    /// A metric of your own for the analysis, on the rows of the input: neighborhoods, landmarks, cells.
+    /// Neighborhoods are found by looking at every point. Coordinates still come from the cloud.
+    pub fn analysis_metric(mut self, metric: Box<dyn MetricSpace<Scalar = f64>>) -> Self {
+        self.parts.analysis_metric = Some(Custom::new(metric));
+        self
+    }
+
+    /// A metric of your own for the charts, on the rows of the input: which landmarks are in a chart, and
+    /// the distances that it is laid out from.
+    pub fn triangulation_metric(mut self, metric: Box<dyn MetricSpace<Scalar = f64>>) -> Self {
+        self.parts.chart_metric = Some(Custom::new(metric));
+        self
+    }
+
+    /// Calls `observer` at the beginning of every stage.
+    pub fn on_stage(mut self, observer: impl FnMut(Stage) + 'static) -> Self {
+        self.observer = Box::new(observer);
+        self
+    }
+
+    /// Calls `observer` for every warning as soon as it is known, also where there is no outcome later.
+    pub fn on_warning(mut self, observer: impl FnMut(&Warning) + 'static) -> Self {
+        self.warned = Box::new(observer);
+        self
+    }
+
+    /// Reconstructs the surface that `cloud` was sampled from.
+    ///
+    /// # Errors
+    /// Input that cannot be worked on ([`Error::is_input`]), or a stage that failed before there was
+    /// a mesh. A mesh that is not good comes back in the outcome, unverified.
+    pub fn reconstruct(&mut self, cloud: &PointCloud<f64>) -> Result<Outcome, Error> {
+        self.run(&Input { cloud, given: None })
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parts.parameters
+    }
+
+    /// Triangulates a waist that came from elsewhere: measured distances, another program.
+    ///
+    /// # Errors
+    /// Those of [`Triangulator::triangulate`].
+    pub fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
+        let chart = self.parts.chart.as_ref();
+        self.parts.triangulator(chart).triangulate(waist)
+    }
+
+    pub(crate) fn warn(&mut self, warning: &Warning) {
+        (self.warned)(warning);
+    }
+}
+
+impl Parts {
+    /// The triangulator that lays stars out in a chart.
+    fn triangulator<'a>(&'a self, chart: &'a dyn LocalChart) -> Triangulator<'a> {
+        let literal = self.parameters.method == Method::Paper;
+        Triangulator {
+            chart,
+            test: self.test.as_ref(),
+            rule: if literal {
+                &MinimumCircumradius
+            } else {
+                self.rule.as_ref()
+            },
+            largest_circumradius: f64::INFINITY,
+            repair: !literal,
+            rules: if literal {
+                Rules::PAPER
+            } else {
+                Rules::MEASURED
+            },
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! What a reconstruction yields.
+
+use super::{Parameters, Stage};
+use crate::given::GivenSpace;
+use crate::spaces::Warning;
+use crate::watched::Distortion;
+use crosscap_algorithms::certificate::{Certificate, Verdict};
+use crosscap_algorithms::homology::Homology;
+use crosscap_algorithms::pieces::{Pieces, PiecesError};
+use crosscap_algorithms::stratify::{ModelCounts, StratifyCounts, Tuning};
+use crosscap_algorithms::triangulate::TriangulationCounts;
+use crosscap_backends::geodesic::GraphReport;
+use crosscap_core::{Error, Mesh};
+use serde::Serialize;
+
+/// Counts and times of a reconstruction.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Version of this program.
+    pub version: &'static str,
+    /// The parameters.
+    pub parameters: Parameters,
+    /// Points of the input.
+    pub points: usize,
+    /// N.
+    pub dimension: usize,
+    /// Points that coincide with an earlier one and were left out.
+    pub duplicates: usize,
+    /// What told the local dimension; none where every point was taken as 2-dimensional.
+    pub estimator: Option<String>,
+    /// Mean number of points in a neighborhood.
+    pub mean_neighbors: f64,
+    /// Points whose neighborhood is not 2-dimensional.
+    pub candidates: usize,
+    /// Points found on curves.
+    pub curve_points: usize,
+    /// Points whose neighborhood no model explained.
+    pub unexplained: usize,
+    /// What became of every model that took part, by its own name: fits asked for, refused and why, won.
+    pub models: Vec<ModelCounts>,
+    /// Landmarks, chains, cells.
+    pub landmarks: StratifyCounts,
+    /// Landmarks added where triangles strayed from the points.
+    pub added_landmarks: usize,
+    /// Visits and repairs.
+    pub triangulation: TriangulationCounts,
+    /// How much the charts lose.
+    pub chart_distortion: Distortion,
+    /// The graph of geodesic distances, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub graph: Option<GraphReport>,
+    /// What became of distances that were the only input.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub given: Option<GivenSpace>,
+    /// What may be wrong although nothing failed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
+    /// The numbers that decided.
+    pub tuning: Tuning,
+    /// Seconds spent in each stage, in order.
+    pub seconds: Vec<(Stage, f64)>,
+}
+
+/// What a reconstruction yields, verified or not.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The mesh; vertices on double curves lie on the curve, beside their input point.
+    pub mesh: Mesh,
+    /// Betti numbers and torsion.
+    pub homology: Homology,
+    /// Every level of validity with its violations.
+    pub certificate: Certificate,
+    /// What the surface is, where the crossing can be undone.
+    pub pieces: Result<Pieces, PiecesError>,
+    /// Counts and times.
+    pub report: Report,
+    /// Where the triangulation could not be completed, with the parameter to change.
+    pub failures: Vec<Error>,
+}
+
+impl Outcome {
+    /// Whether the mesh may be handed over as good.
+    pub fn is_verified(&self) -> bool {
+        self.failures.is_empty() && matches!(self.certificate.verdict(), Verdict::Verified)
+    }
+}

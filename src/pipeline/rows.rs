@@ -1,0 +1,135 @@
+//! Which rows of the input are worked on: copies of a place say nothing.
+
+use crosscap_core::{Error, PointCloud};
+
+/// The rows of the input that are worked on.
+pub(super) struct Rows {
+    /// Their points.
+    pub(super) cloud: PointCloud<f64>,
+    /// Their number in the input.
+    pub(super) kept: Vec<usize>,
+    /// Rows of the input that coincide with an earlier one.
+    pub(super) duplicates: usize,
+}
+
+impl Rows {
+    /// The first row of every place; all rows with `copies`, for a metric that knows them as they are.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for points of fewer than two coordinates, or too few of them.
+    pub(super) fn of(cloud: &PointCloud<f64>, copies: bool) -> Result<Self, Error> {
+        if cloud.dimension() < 2 {
+            return Err(Error::Shape {
+                found: format!("points of R^{}", cloud.dimension()),
+                expected: "at least 2 coordinates".into(),
+            });
+        }
+        let kept = first_of_each(cloud);
+        let duplicates = cloud.len() - kept.len();
+        let (cloud, kept) = if duplicates == 0 || copies {
+            (cloud.clone(), (0..cloud.len()).collect())
+        } else {
+            (cloud.select(&kept), kept)
+        };
+        if cloud.len() < LEAST_POINTS {
+            return Err(Error::Shape {
+                found: format!("{} different points", cloud.len()),
+                expected: format!("at least {LEAST_POINTS}"),
+            });
+        }
+        Ok(Self {
+            cloud,
+            kept,
+            duplicates,
+        })
+    }
+
+    /// Positions among the kept rows of rows of the `whole` input, or of the rows that they are copies of.
+    ///
+    /// # Errors
+    /// [`Error::Index`] for a row that is not there.
+    pub(super) fn positions(
+        &self,
+        whole: &PointCloud<f64>,
+        boundary: &[usize],
+    ) -> Result<Vec<usize>, Error> {
+        boundary_rows(boundary, &self.kept, whole)
+    }
+
+    /// Numbers in the input of some of the kept rows.
+    pub(super) fn in_input(&self, rows: &[usize]) -> Vec<usize> {
+        rows.iter().map(|&r| self.kept[r]).collect()
+    }
+}
+
+/// Fewest different points that are worked on.
+const LEAST_POINTS: usize = 8;
+
+/// A number for the place of a row, equal for equal places.
+fn fingerprint(row: &[f64]) -> u64 {
+    let mut sum = 0u64;
+    for x in row {
+        // Negative and positive zero are equal.
+        sum = (sum.rotate_left(5) ^ (x + 0.0).to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        sum ^= sum >> 29;
+    }
+    sum
+}
+
+/// The first row of every place, in order.
+fn first_of_each(cloud: &PointCloud<f64>) -> Vec<usize> {
+    let mut marks: Vec<(u64, u32)> = cloud
+        .iter()
+        .zip(0..)
+        .map(|(row, i)| (fingerprint(row), i))
+        .collect();
+    marks.sort_unstable();
+    let mut copy = vec![false; cloud.len()];
+    for like in marks.chunk_by(|a, b| a.0 == b.0) {
+        // Rows of one fingerprint are nearly always copies, a few at most.
+        for (at, &(_, row)) in like.iter().enumerate() {
+            copy[row as usize] = like[..at].iter().any(|&(_, first)| {
+                !copy[first as usize] && cloud.point(first as usize) == cloud.point(row as usize)
+            });
+        }
+    }
+    (0..cloud.len()).filter(|&row| !copy[row]).collect()
+}
+
+/// Positions of the boundary rows, or of the rows that they are copies of, among the kept ones.
+fn boundary_rows(
+    boundary: &[usize],
+    rows: &[usize],
+    cloud: &PointCloud<f64>,
+) -> Result<Vec<usize>, Error> {
+    let mut out = Vec::with_capacity(boundary.len());
+    let mut by_place: Vec<usize> = if boundary.is_empty() {
+        Vec::new()
+    } else {
+        (0..rows.len()).collect()
+    };
+    by_place.sort_by(|&a, &b| order_of_places(cloud, rows[a], rows[b]));
+    for &row in boundary {
+        if row >= cloud.len() {
+            return Err(Error::Index {
+                what: "boundary row",
+                index: row,
+                limit: cloud.len(),
+            });
+        }
+        let at = by_place.binary_search_by(|&k| order_of_places(cloud, rows[k], row));
+        out.extend(at.ok().map(|at| by_place[at]));
+    }
+    out.sort_unstable();
+    out.dedup();
+    Ok(out)
+}
+
+/// Lexicographic order of the coordinates of two rows; negative and positive zero are equal.
+fn order_of_places(cloud: &PointCloud<f64>, a: usize, b: usize) -> std::cmp::Ordering {
+    let pairs = cloud.point(a).iter().zip(cloud.point(b));
+    pairs
+        .map(|(x, y)| (x + 0.0).total_cmp(&(y + 0.0)))
+        .find(|o| o.is_ne())
+        .unwrap_or(std::cmp::Ordering::Equal)
+}

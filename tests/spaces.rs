@@ -1,0 +1,146 @@
+//! Spaces that are no Euclidean ones, and plug-ins that do what the default does.
+
+use crosscap::prelude::*;
+use crosscap_algorithms::dimension::PrincipalComponents;
+use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
+use crosscap_algorithms::singularity::TwoPlanes;
+use crosscap_algorithms::surfaces::Random;
+use crosscap_backends::files::Distances;
+use std::f64::consts::TAU;
+
+/// `count` distances a point, by a function of two points.
+fn dense(count: usize, distance: impl Fn(usize, usize) -> f64) -> Distances {
+    let values = (0..count * count).map(|k| distance(k / count, k % count));
+    Distances::Dense {
+        count,
+        values: values.collect(),
+    }
+}
+
+fn betti(parameters: Parameters, distances: &Distances) -> Result<[usize; 3], String> {
+    let outcome = Pipeline::new(parameters)
+        .unwrap()
+        .reconstruct_distances(distances)
+        .unwrap();
+    if outcome.is_verified() {
+        Ok(outcome.homology.betti_rational)
+    } else {
+        Err(outcome.certificate.to_string())
+    }
+}
+
+/// Unit spheres of `each` points, distances along arcs within a sphere, `apart` between spheres.
+fn spheres(count: usize, each: usize, apart: f64) -> Distances {
+    let mut random = Random::new(3);
+    let points: Vec<[f64; 3]> = (0..count * each)
+        .map(|_| {
+            let x = [0; 3].map(|_| random.normal());
+            let norm = x.iter().map(|c| c * c).sum::<f64>().sqrt();
+            x.map(|c| c / norm)
+        })
+        .collect();
+    dense(points.len(), |a, b| {
+        if a == b {
+            return 0.0;
+        }
+        if a / each != b / each {
+            return apart;
+        }
+        let (p, q) = (points[a.min(b)], points[a.max(b)]);
+        let cosine: f64 = p.iter().zip(&q).map(|(x, y)| x * y).sum();
+        cosine.clamp(-1.0, 1.0).acos()
+    })
+}
+
+#[test]
+fn spheres_far_apart_that_lie_in_no_space() {
+    for count in [2, 5] {
+        let distances = spheres(count, 400, 10.0);
+        let found = betti(Parameters::new(0.9, 0.4).surface(), &distances);
+        assert_eq!(found, Ok([count, 0, count]));
+    }
+}
+
+#[test]
+fn a_torus_of_two_angles_is_flat() {
+    let mut random = Random::new(7);
+    let n = 2500;
+    let angles: Vec<[f64; 2]> = (0..n)
+        .map(|_| [0; 2].map(|_| TAU * random.uniform()))
+        .collect();
+    let distances = dense(n, |a, b| {
+        let around = (0..2).map(|k| {
+            let d = (angles[a][k] - angles[b][k]).abs();
+            d.min(TAU - d).powi(2)
+        });
+        around.sum::<f64>().sqrt()
+    });
+    for dl in [0.2, 0.4, 0.6] {
+        let found = betti(Parameters::new(0.9, dl).surface(), &distances);
+        assert_eq!(found, Ok([1, 2, 1]), "dl {dl}");
+    }
+}
+
+fn two_spheres() -> PointCloud<f64> {
+    let surface = SampleSurface::find("two_spheres").unwrap();
+    surface.sample(&Sampling::new(3500, 3)).unwrap().points
+}
+
+fn parameters() -> Parameters {
+    Parameters::new(0.5, 0.3)
+}
+
+#[test]
+fn plug_ins_that_do_what_the_default_does_change_nothing() {
+    let cloud = two_spheres();
+    let pipeline = || Pipeline::new(parameters()).unwrap();
+    let default = pipeline().reconstruct(&cloud).unwrap();
+    assert!(default.is_verified());
+    assert_eq!(default.homology.betti_rational, [1, 0, 3]);
+    let metric = Euclidean::new(cloud.clone());
+    let estimator = PrincipalComponents::new(parameters().dt).unwrap();
+    let others = [
+        pipeline().oracle(Box::new(BruteForceOracle::new(metric.clone()))),
+        pipeline().estimator(Box::new(estimator)),
+        pipeline().analysis_metric(Box::new(metric)),
+    ];
+    for mut other in others {
+        let outcome = other.reconstruct(&cloud).unwrap();
+        assert_eq!(outcome.mesh, default.mesh);
+        assert_eq!(outcome.certificate, default.certificate);
+        assert_eq!(outcome.report.models, default.report.models);
+        assert_eq!(outcome.report.mean_neighbors, default.report.mean_neighbors);
+    }
+}
+
+#[test]
+fn the_report_names_what_ran() {
+    let cloud = two_spheres();
+    let p = parameters();
+    let models: Vec<Box<dyn SingularityModel>> =
+        vec![Box::new(TwoPlanes::new(p.dp, p.ep).unwrap())];
+    let outcome = Pipeline::new(Parameters {
+        models: Vec::new(),
+        ..p.clone()
+    })
+    .unwrap()
+    .models(models)
+    .reconstruct(&cloud)
+    .unwrap();
+    let [counts] = &outcome.report.models[..] else {
+        panic!("{:?}", outcome.report.models);
+    };
+    assert_eq!(counts.name, TwoPlanes::new(p.dp, p.ep).unwrap().name());
+    assert!(counts.won > 0 && counts.broken == 0, "{counts:?}");
+    let refused = counts.too_few_points
+        + counts.no_real_solution
+        + counts.poor_fit
+        + counts.simpler_model_fits
+        + counts.empty_stratum
+        + counts.other;
+    assert_eq!(
+        counts.asked,
+        counts.won + counts.lost + refused,
+        "{counts:?}"
+    );
+}
