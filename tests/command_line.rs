@@ -292,8 +292,8 @@ fn usage_errors_name_what_is_wrong() {
             "there is no folder no",
         ),
         (
-            "reconstruct p.npy -o m.stl --eps 1 --dl 0.5",
-            "extension .stl, expected one of .npz",
+            "reconstruct p.npy -o m.dae --eps 1 --dl 0.5",
+            "extension .dae, expected one of .npz",
         ),
         (
             &format!("{reconstruct} --eps 1 --dl 0.5 --picture a.gif"),
@@ -918,6 +918,61 @@ fn crossings_are_taken_apart() {
     assert_eq!(homology.betti_rational, [2, 0, 2]);
 }
 
+// What files carry beside positions
+
+#[test]
+fn normals_are_no_dimensions() {
+    let room = Room::new();
+    room.run("sample sphere -o sphere.csv -n 2500 --seed 3")
+        .expect(0);
+    // A unit sphere about the origin: a place is its own normal.
+    let rows = std::fs::read_to_string(room.path("sphere.csv")).unwrap();
+    let doubled: String = rows.lines().map(|row| format!("{row},{row}\n")).collect();
+    room.write("normals.xyz", doubled.replace(',', " "));
+    let ran = room.run("reconstruct normals.xyz -o sphere.npz --eps 0.4 --dl 0.2 --surface");
+    let ran = ran
+        .expect(0)
+        .says("1, 0, 1")
+        .complains("columns 3 to 5 are unit normals");
+    assert!(ran.err.contains("--columns all"), "{}", ran.err);
+    assert_eq!(
+        read_mesh(room.path("sphere.npz"))
+            .unwrap()
+            .mesh
+            .vertices
+            .dimension(),
+        3
+    );
+    room.run("dimension normals.xyz --columns 0,9 --eps 0.4")
+        .expect(2)
+        .complains("found 6 columns without names, expected column 9 of --columns");
+}
+
+#[test]
+fn completions_and_pages_of_the_manual() {
+    let room = Room::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let words = room.run(&format!("completions {shell}")).expect(0);
+        assert!(
+            words.out.contains("reconstruct") && words.out.contains("columns"),
+            "{shell}"
+        );
+    }
+    room.run("completions man")
+        .expect(0)
+        .says(".TH crosscap")
+        .says("reconstruct");
+    room.run("completions man reconstruct")
+        .expect(0)
+        .says("columns");
+    room.run("completions man reconstrut")
+        .expect(2)
+        .complains("expected one of demo, sample");
+    room.run("completions zsh sample")
+        .expect(2)
+        .complains("COMMAND goes with man");
+}
+
 // Conversions and pictures
 
 #[test]
@@ -935,6 +990,11 @@ fn meshes_survive_a_round_trip() {
     let back = read_mesh(room.path("f.npz")).unwrap().mesh;
     assert_eq!(back.complex, spheres.complex);
     assert_eq!(back.vertices, spheres.vertices);
+    for to in ["g.stl", "h.glb"] {
+        room.run(&format!("convert a.npz {to}")).expect(0);
+    }
+    // A printer's file has no vertices of its own: those of its triangles are found again.
+    room.run("check g.stl").says("1, 0, 3");
 }
 
 #[test]

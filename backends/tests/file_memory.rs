@@ -3,7 +3,7 @@
 //! One test in a process of its own: the allocator counts for everybody.
 
 use crosscap_backends::files::{
-    PointOptions, read_distances, read_indices, read_mesh, read_points,
+    POINT_EXTENSIONS, PointOptions, read_distances, read_indices, read_mesh, read_points,
 };
 use proptest::test_runner::{Config, TestRunner};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -64,6 +64,14 @@ fn mat(dimensions: [u32; 2], size: u32) -> Vec<u8> {
     bytes
 }
 
+/// A scan of four thousand million points of 65535 bytes.
+fn las() -> Vec<u8> {
+    let mut bytes = b"LASF".to_vec();
+    bytes.resize(300, 0);
+    bytes[105..111].fill(255);
+    bytes
+}
+
 fn liars() -> Vec<Vec<u8>> {
     let ply = |encoding: &str, property: &str| {
         format!(
@@ -84,6 +92,12 @@ fn liars() -> Vec<Vec<u8>> {
         ply("binary_big_endian", ""),
         b"OFF\n1000000000000 1000000000000 0\n0 0 0\n".to_vec(),
         b"1000000000000\n\nC 0 0 0\n".to_vec(),
+        b"nOFF\n1000000000000\n1000000000000 1 0\n0 0 0\n".to_vec(),
+        b"# .PCD\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nPOINTS 1000000000000\nDATA binary\n12345678".to_vec(),
+        b"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 9\nDATA binary_compressed\n\x04\0\0\0\xff\xff\xff\xff1234".to_vec(),
+        b"# vtk DataFile Version 3.0\n\nBINARY\nDATASET POLYDATA\nPOINTS 1000000000000 double\n1234".to_vec(),
+        [vec![b' '; 80], vec![255; 54]].concat(),
+        las(),
         b"v 0 0 0\nf 1 1000000000000 2\n".to_vec(),
         b"<VTKFile><UnstructuredGrid><Piece NumberOfPoints=\"4000000000\"><Points>\
           <DataArray type=\"Float64\" NumberOfComponents=\"4000000000\" format=\"binary\">\
@@ -93,9 +107,7 @@ fn liars() -> Vec<Vec<u8>> {
 }
 
 fn read_all(folder: &Path, bytes: &[u8]) {
-    for extension in [
-        "npy", "npz", "csv", "txt", "xyz", "pdb", "ply", "mat", "vtu", "obj", "off",
-    ] {
+    for extension in POINT_EXTENSIONS.split(", ").map(|e| &e[1..]) {
         let path = folder.join(format!("file.{extension}"));
         std::fs::write(&path, bytes).unwrap();
         let _ = read_points(&path, &PointOptions::default());

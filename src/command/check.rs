@@ -33,7 +33,7 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_long_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Check {
-    /// Mesh: .npz, .vtu, .ply, .obj or .off
+    /// Mesh: .npz, .vtu, .ply, .obj, .off or .stl
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
 

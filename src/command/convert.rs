@@ -10,8 +10,9 @@ use crosscap_backends::files::{MESH_EXTENSIONS, read_mesh, write_mesh};
 use crosscap_core::{Error, Mesh, PointCloud};
 use std::path::{Path, PathBuf};
 
-const EXAMPLES: &str = ".npz keeps everything; .vtu all but the parameters; .ply loses the coordinates above R^3; .obj also
-the rows of the input; .off also the curves. A mesh in R^N goes into .ply, .obj and .off through a layout.
+const EXAMPLES: &str = ".npz and .vtu keep everything; .ply loses the coordinates above R^3 and the parameters; .obj also the rows of the
+input; .off and .stl also the curves; .glb, in colors, is for showing only. A mesh in R^N goes into all but .npz and .vtu
+through a layout. Triangles are wound: those of a closed piece in R^3 counter-clockwise, seen from outside.
 
 Examples:
   crosscap convert mesh.npz mesh.vtu
@@ -21,11 +22,11 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Convert {
-    /// Mesh: .npz, .vtu, .ply, .obj or .off
+    /// Mesh: .npz, .vtu, .ply, .obj, .off or .stl
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
 
-    /// Mesh to write: .npz, .vtu, .ply, .obj or .off
+    /// Mesh to write: .npz, .vtu, .ply, .obj, .off, .stl or .glb
     #[arg(value_name = "OUT")]
     output: PathBuf,
 

@@ -3,7 +3,9 @@
 mod check;
 mod compare;
 mod compare_plot;
+mod completions;
 mod convert;
+mod cost;
 mod demo;
 mod dimension;
 mod estimators;
@@ -23,7 +25,8 @@ mod terminal;
 mod view;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use cost::Cost;
 use failure::Failure;
 use std::process::ExitCode;
 
@@ -67,6 +70,7 @@ enum Command {
     View(view::View),
     Convert(convert::Convert),
     Paper(paper::Paper),
+    Completions(completions::Completions),
 }
 
 /// Runs the command line of this process.
@@ -82,6 +86,7 @@ pub fn run() -> ExitCode {
             };
         }
     };
+    let cost = Cost::start();
     let result = match cli.command {
         Command::Demo(command) => command.run(),
         Command::Sample(command) => command.run(),
@@ -92,22 +97,27 @@ pub fn run() -> ExitCode {
         Command::View(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Paper(command) => command.run(),
+        Command::Completions(command) => command.run(Cli::command()),
     };
-    match result {
+    let code = match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             terminal::complain(&failure);
             ExitCode::from(failure.code())
         }
+    };
+    if cost.is_worth_telling() {
+        terminal::complain(cost);
     }
+    code
 }
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
+    use super::*;
 
     #[test]
     fn the_definition_of_the_arguments_is_consistent() {
-        super::Cli::command().debug_assert();
+        Cli::command().debug_assert();
     }
 }

@@ -5,7 +5,8 @@ use super::terminal::complain;
 use clap::{Args, ValueEnum};
 use crosscap_algorithms::alignment::Alignment;
 use crosscap_backends::files::{
-    AnyCloud, Atom, Molecule, PointOptions, read_molecule, read_points,
+    AnyCloud, Atom, ColumnChoice, Molecule, PointOptions, read_molecule, read_point_file,
+    read_points,
 };
 use std::path::{Path, PathBuf};
 
@@ -24,6 +25,7 @@ pub enum AlignName {
 }
 
 #[derive(Args, Debug)]
+#[command(next_help_heading = "Reading points")]
 pub struct PointArguments {
     /// Which array of a .npz of points, which variable of a .mat [default: points, vertices, or the only one]
     #[arg(long, value_name = "NAME")]
@@ -32,6 +34,11 @@ pub struct PointArguments {
     /// The points are the columns of the array or table
     #[arg(long)]
     transpose: bool,
+
+    /// Columns that are coordinates: numbers from 0 (0,1,2 or 0-2), names (x,y,z), or all [default: x, y, z where the
+    /// file names them; else all, without the normals and colors of an .xyz, .asc or .pts]
+    #[arg(long, value_name = "COLUMNS")]
+    columns: Option<ColumnChoice>,
 
     /// Atoms of a molecule to take, in the order of the file: numbers from 1 (1-8,10), names (CA), element:C, heavy, all
     #[arg(long, value_name = "ATOMS")]
@@ -53,6 +60,7 @@ impl PointArguments {
         let options = PointOptions {
             array: self.array.clone(),
             transpose: self.transpose,
+            columns: self.columns.clone().unwrap_or_default(),
         };
         let align = match (self.align, &self.reference) {
             (Some(AlignName::None), Some(_)) => {
@@ -64,7 +72,11 @@ impl PointArguments {
             (align, _) => align.unwrap_or(AlignName::None),
         };
         if self.atoms.is_none() && align == AlignName::None {
-            return Ok(read_points(path, &options)?);
+            let file = read_point_file(path, &options)?;
+            for remark in &file.remarks {
+                complain(format!("{}: {remark}", path.display()));
+            }
+            return Ok(file.points);
         }
         let molecule = self.chosen(read_molecule(path, &options)?, path)?;
         if align == AlignName::None {

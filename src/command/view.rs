@@ -25,7 +25,7 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_long_help = EXAMPLES)]
 pub struct View {
-    /// Mesh: .npz, .vtu, .ply, .obj or .off
+    /// Mesh: .npz, .vtu, .ply, .obj, .off or .stl
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
 

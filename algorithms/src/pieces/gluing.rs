@@ -3,7 +3,7 @@
 use super::PiecesError;
 use super::straightness::{self, PAIRINGS, Vote};
 use crate::homology::sides::Sides;
-use crosscap_core::Mesh;
+use crosscap_core::{Error, Mesh};
 
 /// No triangle continues this side.
 pub(super) const FREE: u32 = u32::MAX;
@@ -23,6 +23,18 @@ pub(super) struct Gluing<'a> {
 impl<'a> Gluing<'a> {
     /// Glues across every edge with two triangles, and by vote across those with four.
     pub fn new(mesh: &'a Mesh) -> Result<Self, PiecesError> {
+        let mut gluing = Self::across_plain_edges(mesh)?;
+        for glued in gluing.paired_chains()? {
+            for [s, t] in glued {
+                gluing.partner[s as usize] = t;
+                gluing.partner[t as usize] = s;
+            }
+        }
+        Ok(gluing)
+    }
+
+    /// Glues across every edge with two triangles, and no other.
+    pub fn across_plain_edges(mesh: &'a Mesh) -> Result<Self, Error> {
         let sides = Sides::new(&mesh.complex)?;
         let count = 3 * mesh.complex.triangles.len();
         let mut gluing = Self {
@@ -37,12 +49,6 @@ impl<'a> Gluing<'a> {
                 gluing.edge_of[side as usize] = e as u32;
             }
             if let &[s, t] = at {
-                gluing.partner[s as usize] = t;
-                gluing.partner[t as usize] = s;
-            }
-        }
-        for glued in gluing.paired_chains()? {
-            for [s, t] in glued {
                 gluing.partner[s as usize] = t;
                 gluing.partner[t as usize] = s;
             }

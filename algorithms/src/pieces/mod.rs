@@ -23,10 +23,12 @@ mod gluing;
 mod normalization;
 mod straightness;
 mod surface;
+mod winding;
 
 pub use error::PiecesError;
 pub use straightness::LEAST_MARGIN;
 pub use surface::Surface;
+pub use winding::wound_triangles;
 
 use crosscap_core::{Error, Mesh};
 use gluing::Gluing;

@@ -3,14 +3,14 @@
 use super::error::{FileError, Flaw, Parsed};
 use super::npy;
 use super::npz::Archive;
-use super::whole::{extension, read_bytes};
+use super::whole::{packed_extension, read_bytes};
 use crosscap_core::SparseDistances;
 use std::path::Path;
 
 const EXTENSIONS: &str = ".npy, .npz";
 
-/// Largest difference of the two directions, relative to the largest distance, that passes as
-/// rounding: single precision with room for a sum of a few terms.
+/// Largest difference of the two directions, and largest distance of a point to itself, relative to the
+/// largest distance, that passes as rounding: single precision with room for a sum of a few terms.
 const ROUNDING: f64 = 1e-5;
 
 /// A symmetric matrix of distances.
@@ -45,8 +45,8 @@ impl Distances {
 /// Reads a matrix of distances: dense from `.npy`, sparse from what `scipy.sparse.save_npz`
 /// writes (`csr`, `csc`, `coo`).
 ///
-/// Dense: the two directions of a pair may differ by 1e-5 of the largest distance and become
-/// their mean. Sparse: a pair may be there in one direction or in both, which must agree likewise
+/// What is within 1e-5 of the largest distance passes as rounding: on the diagonal and below zero it
+/// becomes 0. Dense: the two directions of a pair may differ by as much and become their mean. Sparse: a pair may be there in one direction or in both, which must agree likewise
 /// (the mean is kept); stored zeros are distances, the diagonal must be zero.
 ///
 /// # Errors
@@ -65,7 +65,7 @@ impl Distances {
 /// ```
 pub fn read_distances(path: impl AsRef<Path>) -> Result<Distances, FileError> {
     let path = path.as_ref();
-    let extension = extension(path);
+    let extension = packed_extension(path);
     if !matches!(extension.as_str(), "npy" | "npz") {
         return Err(FileError::Extension {
             path: path.into(),
@@ -85,15 +85,26 @@ pub(crate) fn parse(extension: &str, bytes: &[u8]) -> Parsed<Distances> {
     }
 }
 
-fn entry(d: f64, row: usize, column: usize) -> Parsed<()> {
-    let flaw = |expected: &str| Err(Flaw::row("", row, Some(column), d.to_string(), expected));
-    if !d.is_finite() || d < 0.0 {
-        return flaw("a finite distance, 0 or more");
+/// The distance that an entry stands for: what rounding leaves of 0, also below it, is 0.
+///
+/// Differences of squares (|a|^2 + |b|^2 - 2 a.b) leave 1e-8 of the distance of a point to itself, one
+/// minus a cosine leaves 2e-16 or its negative.
+fn entry(d: f64, limit: f64, row: usize, column: usize) -> Parsed<f64> {
+    let flaw = |expected: String| Err(Flaw::row("", row, Some(column), d.to_string(), expected));
+    if !d.is_finite() || d < -limit {
+        return flaw("a finite distance, 0 or more".into());
     }
-    if row == column && d != 0.0 {
-        return flaw("0, as the distance of a point to itself");
+    if row == column && d.abs() > limit {
+        return flaw(format!(
+            "0 within {limit}, as the distance of a point to itself"
+        ));
     }
-    Ok(())
+    Ok(if row == column { 0.0 } else { d.max(0.0) })
+}
+
+/// What passes as rounding among these distances.
+fn rounding(distances: &[f64]) -> f64 {
+    ROUNDING * distances.iter().fold(0.0_f64, |a, &b| a.max(b))
 }
 
 fn directions(a: f64, b: f64, limit: f64, row: usize, column: usize) -> Parsed<f64> {
@@ -120,10 +131,10 @@ fn dense(bytes: &[u8]) -> Parsed<Distances> {
         ));
     }
     let mut values = array.numbers.into_f64();
-    for (at, &d) in values.iter().enumerate() {
-        entry(d, at / count, at % count)?;
+    let limit = rounding(&values);
+    for (at, d) in values.iter_mut().enumerate() {
+        *d = entry(*d, limit, at / count, at % count)?;
     }
-    let limit = ROUNDING * values.iter().fold(0.0_f64, |a, &b| a.max(b));
     for a in 0..count {
         for b in 0..a {
             let mean = directions(values[a * count + b], values[b * count + a], limit, a, b)?;
@@ -233,10 +244,10 @@ fn sparse(bytes: &[u8]) -> Parsed<Distances> {
             "distances for most of the rows",
         ));
     }
-    let limit = ROUNDING * data.iter().fold(0.0_f64, |a, &b| a.max(b));
+    let limit = rounding(&data);
     let mut entries: Vec<(u32, u32, bool, f64)> = Vec::with_capacity(data.len());
     for ((&a, &b), &d) in rows.iter().zip(&columns).zip(&data) {
-        entry(d, a as usize, b as usize)?;
+        let d = entry(d, limit, a as usize, b as usize)?;
         entries.push((a.min(b), a.max(b), a > b, d));
     }
     entries.sort_unstable_by_key(|&(a, b, turned, _)| (a, b, turned));

@@ -102,8 +102,9 @@ pub enum FileError {
         source: std::io::Error,
     },
     /// The extension names no format that serves here.
-    #[error("{}: found {}, expected one of {known}", path.display(),
-        if extension.is_empty() { "no extension".to_string() } else { format!("extension .{extension}") })]
+    #[error("{}: found {}, expected one of {known}{}", path.display(),
+        if extension.is_empty() { "no extension".to_string() } else { format!("extension .{extension}") },
+        instead(extension))]
     Extension {
         /// The file.
         path: PathBuf,
@@ -124,6 +125,27 @@ pub enum FileError {
         /// What should be there.
         expected: String,
     },
+}
+
+/// What to do with a file of a kind that is known and not read.
+fn instead(extension: &str) -> &'static str {
+    match extension {
+        "h5" | "hdf5" | "nc" => ": numpy.save(\"points.npy\", h5py.File(name)[dataset])",
+        "parquet" | "feather" | "arrow" | "pkl" | "pickle" => {
+            ": numpy.save(\"points.npy\", frame[[\"x\", \"y\", \"z\"]].to_numpy()), with the frame as pandas reads it"
+        }
+        "xlsx" | "xls" | "ods" => ": save it as .csv",
+        "laz" => ": unpack it first (laszip -i points.laz -o points.las)",
+        "e57" => ": pdal translate points.e57 points.ply",
+        "xtc" | "trr" | "dcd" | "nc4" => {
+            ": numpy.save(\"frames.npy\", trajectory.xyz.reshape(len(trajectory), -1)), as mdtraj reads it"
+        }
+        "gltf" | "glb" | "dae" | "fbx" | "3mf" | "step" | "stp" | "iges" => {
+            ": convert it to .ply or .stl first"
+        }
+        "xz" | "bz2" | "zst" | "zip" => ": unpack it, or use gzip",
+        _ => "",
+    }
 }
 
 /// A [`FileError::Content`] before the file has a name: readers work on bytes.

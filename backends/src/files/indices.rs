@@ -1,9 +1,8 @@
 //! Lists of point indices, such as the points of a given boundary.
 
 use super::error::{FileError, Flaw, Parsed};
-use super::whole::{extension, read_bytes, write_bytes_whole};
+use super::whole::{extension, packed_extension, read_bytes, write_bytes_whole};
 use super::{npy, table};
-use ndarray::ArrayView1;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -28,7 +27,7 @@ const EXTENSIONS: &str = ".npy, .txt";
 /// ```
 pub fn read_indices(path: impl AsRef<Path>) -> Result<Vec<usize>, FileError> {
     let path = path.as_ref();
-    let extension = extension(path);
+    let extension = packed_extension(path);
     if !matches!(extension.as_str(), "npy" | "txt") {
         return Err(unknown(path, &extension));
     }
@@ -59,7 +58,7 @@ pub(crate) fn indices_bytes(extension: &str, indices: &[usize]) -> Option<Vec<u8
     match extension {
         "npy" => {
             let wide: Vec<i64> = indices.iter().map(|&i| i as i64).collect();
-            Some(npy::bytes(ArrayView1::from(&wide)))
+            Some(npy::bytes(&[wide.len()], &wide))
         }
         "txt" => {
             let mut text = String::new();

@@ -251,11 +251,7 @@ fn matrix(data: &[u8], big: bool, wanted: Option<&str>) -> Parsed<Option<(String
             );
         }
     };
-    let count = match &numbers {
-        Numbers::F32(v) => v.len(),
-        Numbers::F64(v) => v.len(),
-        Numbers::Integer(v) => v.len(),
-    };
+    let count = numbers.len();
     if rows.checked_mul(columns) != Some(count) {
         return Err(Flaw::new(
             format!("{count} numbers"),
@@ -263,10 +259,7 @@ fn matrix(data: &[u8], big: bool, wanted: Option<&str>) -> Parsed<Option<(String
         )
         .within(&name));
     }
-    let array = Array {
-        shape: vec![rows, columns],
-        numbers: numbers.transposed(columns, rows),
-    };
+    let array = Array::new(vec![rows, columns], numbers.transposed(columns, rows));
     Ok(Some((name, Some(array))))
 }
 

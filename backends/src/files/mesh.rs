@@ -1,14 +1,18 @@
 //! Meshes: triangulated surfaces that may cross themselves, with their curves.
 
 use super::error::{FileError, Flaw, Parsed};
-use super::whole::{extension, read_bytes, write_bytes_whole};
-use super::{any_cloud, mesh_npz, obj, off, ply, vtu};
+use super::whole::{extension, packed_extension, read_bytes, write_bytes_whole};
+use super::{any_cloud, glb, mesh_npz, obj, off, ply, stl, vtu};
+use crosscap_algorithms::pieces::wound_triangles;
 use crosscap_core::{Complex, CurveEdge, Mesh, PointCloud};
 use serde_json::Value;
 use std::path::Path;
 
-/// The extensions that [`read_mesh`] and [`write_mesh`] know.
-pub const MESH_EXTENSIONS: &str = ".npz, .vtu, .ply, .obj, .off";
+/// The extensions that [`write_mesh`] knows.
+pub const MESH_EXTENSIONS: &str = ".npz, .vtu, .ply, .obj, .off, .stl, .glb";
+
+/// The extensions that [`read_mesh`] knows, each also with `.gz` behind it.
+pub const MESH_READ_EXTENSIONS: &str = ".npz, .vtu, .ply, .obj, .off, .stl";
 
 /// What belongs to a mesh beside the mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,13 +39,17 @@ pub struct MeshFile {
 /// | format | places | triangles | curves and their cells | rows of the input | pieces | metadata |
 /// | --- | --- | --- | --- | --- | --- | --- |
 /// | `.npz` | R^N | yes | yes | yes | yes | yes |
-/// | `.vtu` | R^N | yes | yes | yes | yes | no |
+/// | `.vtu` | R^N | yes | yes | yes | yes | yes |
 /// | `.ply` | R^3 | yes | yes | yes | yes | no |
 /// | `.obj` | R^3 | yes | yes | no | no | no |
 /// | `.off` | R^3 | yes | no: deduced from the triangles at an edge | no | no | no |
+/// | `.stl` | R^3, single precision | yes | no | no | no | no |
+/// | `.glb` | R^3, single precision | yes | yes | no | as colors | yes |
 ///
-/// Numbers are kept to the last bit in all of them. `places` are coordinates in R^3 to show the
-/// mesh with, one row a vertex; `.ply`, `.obj` and `.off` need them when N is not 3; `.vtu` takes
+/// Corners of triangles are in the order of [`wound_triangles`]: those of a piece agree with each
+/// other, and a closed piece in R^3 is seen from outside counter-clockwise. Numbers are kept to the
+/// last bit where nothing else is said. `places` are coordinates in R^3 to show the
+/// mesh with, one row a vertex; `.ply`, `.obj`, `.off`, `.stl` and `.glb` need them when N is not 3; `.vtu` takes
 /// them for its points and keeps all N coordinates in the point data `coordinates`, or takes the
 /// first three (or two and 0); `.npz` keeps them beside the vertices.
 ///
@@ -98,12 +106,16 @@ pub fn write_mesh(
 /// truncated file; those of reading a file.
 pub fn read_mesh(path: impl AsRef<Path>) -> Result<MeshFile, FileError> {
     let path = path.as_ref();
-    let extension = extension(path);
-    if !MESH_EXTENSIONS
+    let extension = packed_extension(path);
+    if !MESH_READ_EXTENSIONS
         .split(", ")
         .any(|known| known[1..] == extension)
     {
-        return Err(unknown(path, &extension));
+        return Err(FileError::Extension {
+            path: path.into(),
+            extension,
+            known: MESH_READ_EXTENSIONS,
+        });
     }
     let bytes = read_bytes(path)?;
     parse(&extension, &bytes).map_err(|flaw| flaw.of(path))
@@ -124,6 +136,7 @@ pub(crate) fn parse(extension: &str, bytes: &[u8]) -> Parsed<MeshFile> {
         "vtu" => vtu::parse(bytes),
         "ply" => ply::parse_mesh(bytes),
         "obj" => obj::parse(bytes),
+        "stl" => stl::parse(bytes),
         _ => off::parse(bytes),
     }?
     .finish()
@@ -142,6 +155,8 @@ pub(crate) fn mesh_bytes(
         "ply" => ply::mesh_bytes,
         "obj" => obj::bytes,
         "off" => off::bytes,
+        "stl" => stl::bytes,
+        "glb" => glb::bytes,
         _ => return None,
     };
     let any_dimension = matches!(extension, "npz" | "vtu");
@@ -151,6 +166,8 @@ pub(crate) fn mesh_bytes(
 /// A mesh that was checked and given places, as the writers take it.
 pub(crate) struct Sheet<'a> {
     pub(crate) mesh: &'a Mesh,
+    /// The triangles of the complex in their order, wound.
+    pub(crate) triangles: Vec<[u32; 3]>,
     /// Places in R^3, one a vertex.
     pub(crate) places: Vec<[f64; 3]>,
     /// Whether the caller gave the places.
@@ -185,6 +202,8 @@ impl<'a> Sheet<'a> {
             )
             .within("vertices"));
         }
+        let triangles = wound_triangles(mesh)
+            .map_err(|e| Flaw::new(format!("no mesh ({e})"), "a mesh").within("complex"))?;
         if let Some(pieces) = &extras.pieces
             && pieces.len() != complex.triangles.len()
         {
@@ -218,6 +237,7 @@ impl<'a> Sheet<'a> {
             .collect();
         Ok(Self {
             mesh,
+            triangles,
             places,
             given: !std::ptr::eq(shown, &mesh.vertices),
             pieces: extras.pieces.as_deref(),

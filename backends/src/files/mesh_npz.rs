@@ -5,15 +5,9 @@ use super::mesh::{Parts, RawCurve, Sheet};
 use super::npz::Archive;
 use super::{npy, npz};
 use crosscap_core::CurveEdge;
-use ndarray::{ArrayView, ArrayView1, Dimension, IntoDimension, Ix2};
-use ndarray_npy::WritableElement;
 
-fn table<A: WritableElement>(columns: usize, numbers: &[A]) -> Vec<u8> {
-    let shape: <Ix2 as Dimension>::Pattern = (numbers.len() / columns, columns);
-    npy::bytes(
-        ArrayView::<A, Ix2>::from_shape(shape.into_dimension(), numbers)
-            .expect("whole rows of a block of memory"),
-    )
+fn table<A: npy::Stored>(columns: usize, numbers: &[A]) -> Vec<u8> {
+    npy::bytes(&[numbers.len() / columns, columns], numbers)
 }
 
 /// The bytes of the archive.
@@ -24,7 +18,7 @@ pub(crate) fn bytes(sheet: &Sheet<'_>) -> Vec<u8> {
     };
     let cells = |edges: &[&CurveEdge]| -> Vec<u8> {
         let cells: Vec<i64> = edges.iter().map(|e| e.cells.into()).collect();
-        npy::bytes(ArrayView1::from(&cells))
+        npy::bytes(&[cells.len()], &cells)
     };
     let curves = |wanted: fn(u8) -> bool| -> Vec<&CurveEdge> {
         mesh.complex
@@ -33,8 +27,7 @@ pub(crate) fn bytes(sheet: &Sheet<'_>) -> Vec<u8> {
             .filter(|e| wanted(e.cells))
             .collect()
     };
-    let triangles: Vec<i64> = mesh
-        .complex
+    let triangles: Vec<i64> = sheet
         .triangles
         .iter()
         .flatten()
@@ -61,17 +54,17 @@ pub(crate) fn bytes(sheet: &Sheet<'_>) -> Vec<u8> {
     }
     arrays.push((
         "point_index",
-        npy::bytes(ArrayView1::from(&mesh.point_index)),
+        npy::bytes(&[mesh.point_index.len()], &mesh.point_index),
     ));
     if let Some(pieces) = sheet.pieces {
-        arrays.push(("pieces", npy::bytes(ArrayView1::from(pieces))));
+        arrays.push(("pieces", npy::bytes(&[pieces.len()], pieces)));
     }
     if sheet.given {
         arrays.push(("places", table(3, sheet.places.as_flattened())));
     }
     if !sheet.metadata.is_null() {
         let json = sheet.metadata.to_string().into_bytes();
-        arrays.push(("metadata", npy::bytes(ArrayView1::from(&json))));
+        arrays.push(("metadata", npy::bytes(&[json.len()], &json)));
     }
     npz::bytes(&arrays)
 }

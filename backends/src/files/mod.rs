@@ -2,7 +2,7 @@
 //!
 //! | what | read | write |
 //! | --- | --- | --- |
-//! | points | [`read_points`] | [`write_points`] |
+//! | points | [`read_points`], [`read_point_file`] | [`write_points`] |
 //! | frames of a molecule | [`read_molecule`] | |
 //! | indices of points | [`read_indices`] | [`write_indices`] |
 //! | meshes | [`read_mesh`] | [`write_mesh`] |
@@ -17,20 +17,30 @@
 //!   the file, the place in it, what was found and what was expected.
 
 mod any_cloud;
+mod columns;
 mod distances;
 mod error;
+mod glb;
 mod indices;
+mod las;
 mod mat;
 mod mesh;
 mod mesh_npz;
 mod molecule;
 mod npy;
+mod npy_header;
 mod npz;
 mod obj;
 mod off;
+mod pcd;
 mod ply;
+mod ply_reader;
 mod points;
+mod remark;
+mod stl;
 mod table;
+mod vtk;
+mod vtk_xml;
 mod vtu;
 mod whole;
 
@@ -38,10 +48,16 @@ mod whole;
 mod tests;
 
 pub use any_cloud::AnyCloud;
+pub use columns::{ColumnChoice, ColumnName};
 pub use distances::{Distances, read_distances};
 pub use error::{FileError, Place};
 pub use indices::{read_indices, write_indices};
-pub use mesh::{MESH_EXTENSIONS, MeshExtras, MeshFile, read_mesh, write_mesh};
+pub use mesh::{
+    MESH_EXTENSIONS, MESH_READ_EXTENSIONS, MeshExtras, MeshFile, read_mesh, write_mesh,
+};
 pub use molecule::{Atom, Molecule, read_molecule};
-pub use points::{POINT_EXTENSIONS, PointOptions, read_points, write_points};
+pub use points::{
+    POINT_EXTENSIONS, PointFile, PointOptions, read_point_file, read_points, write_points,
+};
+pub use remark::{Meaning, Remark};
 pub use whole::write_bytes_whole;

@@ -4,8 +4,8 @@
 
 use super::error::{FileError, Flaw, Parsed, excerpt};
 use super::points::{PointOptions, read_points};
-use super::table::{Table, number, text};
-use super::whole::{extension, read_bytes};
+use super::table::{number, text};
+use super::whole::{packed_extension, read_bytes};
 use crosscap_core::PointCloud;
 use mendeleev::Element;
 use std::path::Path;
@@ -148,7 +148,7 @@ pub fn read_molecule(
     options: &PointOptions,
 ) -> Result<Molecule, FileError> {
     let path = path.as_ref();
-    let extension = extension(path);
+    let extension = packed_extension(path);
     let frames = match extension.as_str() {
         "pdb" => Some(frames_of_pdb(&read_bytes(path)?)),
         "xyz" => {
@@ -178,13 +178,20 @@ pub fn read_molecule(
             ));
         }
         let atoms = frames.atoms_of_all.clone();
-        let Table { columns, numbers } = frames.into_table()?;
+        let Coordinates { columns, numbers } = frames.into_coordinates()?;
         Ok(Molecule {
             atoms,
             frames: super::any_cloud::points(columns, numbers)?,
         })
     };
     molecule().map_err(|flaw| flaw.of(path))
+}
+
+/// Coordinates of the atoms, a row a frame.
+#[derive(Debug)]
+pub(crate) struct Coordinates {
+    pub(crate) columns: usize,
+    pub(crate) numbers: Vec<f64>,
 }
 
 /// Frames with the same atoms in the same order.
@@ -245,11 +252,11 @@ impl Frames {
         Ok(())
     }
 
-    fn into_table(self) -> Parsed<Table> {
+    fn into_coordinates(self) -> Parsed<Coordinates> {
         if self.frames == 0 {
             return Err(Flaw::new("no frame with an atom", "at least one"));
         }
-        Ok(Table {
+        Ok(Coordinates {
             columns: 3 * self.atoms_of_all.len(),
             numbers: self.numbers,
         })
@@ -298,19 +305,29 @@ fn element_of_record(row: &str) -> String {
     first
 }
 
-/// Whether a text starts as chemical `.xyz` does: a line with the number of atoms, alone.
+/// Whether a text starts as chemical `.xyz` does: a line with the number of atoms, alone; and is
+/// not a table behind a line with the number of its rows.
 pub(crate) fn is_chemical(bytes: &[u8]) -> bool {
-    text(bytes).is_ok_and(|text| {
-        text.lines()
-            .map(str::trim)
-            .find(|line| !line.is_empty())
-            .is_some_and(|line| line.parse::<usize>().is_ok())
-    })
+    let Ok(text) = text(bytes) else { return false };
+    let mut rows = text.lines().map(str::trim).skip_while(|l| l.is_empty());
+    let Some(count) = rows.next().and_then(|l| l.parse::<usize>().ok()) else {
+        return false;
+    };
+    // Numbers in as many columns right behind the count, and no row more than was promised: a table.
+    // Frames have a line of comment, often a blank one, before their atoms.
+    let numbers = |row: Option<&str>| {
+        let fields: Vec<&str> = row?.split_whitespace().collect();
+        let all = fields.len() >= 2 && fields.iter().all(|f| f.parse::<f64>().is_ok());
+        all.then_some(fields.len())
+    };
+    let first = numbers(rows.next());
+    let alike = first.is_some() && (count < 2 || numbers(rows.clone().next()) == first);
+    !(alike && rows.filter(|l| !l.is_empty()).count() + 1 == count)
 }
 
 /// Reads frames of a count line, a comment, and lines `element x y z`.
-pub(crate) fn parse_xyz(bytes: &[u8]) -> Parsed<Table> {
-    frames_of_xyz(bytes)?.into_table()
+pub(crate) fn parse_xyz(bytes: &[u8]) -> Parsed<Coordinates> {
+    frames_of_xyz(bytes)?.into_coordinates()
 }
 
 fn frames_of_xyz(bytes: &[u8]) -> Parsed<Frames> {
@@ -361,8 +378,8 @@ fn frames_of_xyz(bytes: &[u8]) -> Parsed<Frames> {
 }
 
 /// Reads the ATOM and HETATM records of every MODEL.
-pub(crate) fn parse_pdb(bytes: &[u8]) -> Parsed<Table> {
-    frames_of_pdb(bytes)?.into_table()
+pub(crate) fn parse_pdb(bytes: &[u8]) -> Parsed<Coordinates> {
+    frames_of_pdb(bytes)?.into_coordinates()
 }
 
 fn frames_of_pdb(bytes: &[u8]) -> Parsed<Frames> {
@@ -495,6 +512,21 @@ mod tests {
             error.to_string().contains("three coordinates an atom"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn a_count_before_a_table_makes_no_molecule() {
+        for (text, chemical) in [
+            ("2\n1 2 3\n4 5 6\n", false),
+            ("2\n6 1 2 3\n6 4 5 6\n", false),
+            ("2\n\n6 1 2 3\n6 4 5 6\n", true),
+            ("2\nwater\nO 1 2 3\nH 4 5 6\n", true),
+            ("2\n0.5 7\nO 1 2 3\nH 4 5 6\n", true),
+            ("2\n1 2 3\n4 5 6\n7 8 9\n", true),
+            ("1 2\n3 4\n", false),
+        ] {
+            assert_eq!(is_chemical(text.as_bytes()), chemical, "{text:?}");
+        }
     }
 
     #[test]

@@ -1,15 +1,14 @@
 //! NumPy arrays, `.npy`.
 //!
-//! The header is parsed, and arrays are written, by `ndarray-npy`. Before it sees a header, its
-//! length and nesting are bounded; before anything is allocated, the size that the header
-//! promises is compared with the bytes that are there.
+//! Read and written by ourselves: a header of one line, then the numbers. Before anything is
+//! allocated, the size that the header promises is compared with the bytes that are there.
 
 use super::error::{Flaw, Parsed, excerpt};
-use ndarray::{ArrayView, Dimension};
-use ndarray_npy::{WritableElement, WriteNpyExt, npy::header::Header};
+use super::npy_header::{self, Field, Header};
+use half::f16;
 
-/// Longest header that is believed; real ones have about 100 bytes.
-const LONGEST_HEADER: usize = 1 << 16;
+/// What to do about a type that is no plain number.
+const SAVE_AGAIN: &str = "save it again as array.astype(float)";
 
 /// Numbers as they are stored; integers of every width as `i64`.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +19,38 @@ pub(crate) enum Numbers {
 }
 
 impl Numbers {
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::F32(v) => v.len(),
+            Self::F64(v) => v.len(),
+            Self::Integer(v) => v.len(),
+        }
+    }
+
+    /// Some columns of rows that have `columns` of them.
+    pub(crate) fn columns(&self, columns: usize, kept: &[usize]) -> Self {
+        fn some<T: Copy>(v: &[T], columns: usize, kept: &[usize]) -> Vec<T> {
+            v.chunks_exact(columns)
+                .flat_map(|row| kept.iter().map(|&k| row[k]))
+                .collect()
+        }
+        match self {
+            Self::F32(v) => Self::F32(some(v, columns, kept)),
+            Self::F64(v) => Self::F64(some(v, columns, kept)),
+            Self::Integer(v) => Self::Integer(some(v, columns, kept)),
+        }
+    }
+
+    /// A number in double precision.
+    pub(crate) fn at(&self, at: usize) -> f64 {
+        match self {
+            Self::F32(v) => v[at].into(),
+            Self::F64(v) => v[at],
+            Self::Integer(v) => v[at] as f64,
+        }
+    }
+
     pub(crate) fn into_f64(self) -> Vec<f64> {
         match self {
             Self::F32(v) => v.into_iter().map(f64::from).collect(),
@@ -31,6 +62,10 @@ impl Numbers {
     /// Rows and columns exchanged: `rows x columns` in row order becomes `columns x rows`.
     pub(crate) fn transposed(&self, rows: usize, columns: usize) -> Self {
         fn turn<T: Copy>(v: &[T], rows: usize, columns: usize) -> Vec<T> {
+            // An empty array may have any number of columns.
+            if v.is_empty() {
+                return vec![];
+            }
             (0..columns)
                 .flat_map(|c| (0..rows).map(move |r| v[r * columns + c]))
                 .collect()
@@ -48,68 +83,65 @@ impl Numbers {
 pub(crate) struct Array {
     pub(crate) shape: Vec<usize>,
     pub(crate) numbers: Numbers,
+    /// Names of the columns, when the entries were records.
+    pub(crate) names: Option<Vec<String>>,
+    /// Whether the numbers were stored with 11 bits.
+    pub(crate) half: bool,
 }
 
 impl Array {
-    /// Rows and columns of a 2-dimensional array.
+    /// An array of numbers without names.
+    pub(crate) fn new(shape: Vec<usize>, numbers: Numbers) -> Self {
+        Self {
+            shape,
+            numbers,
+            names: None,
+            half: false,
+        }
+    }
+
+    /// Rows and columns of a 2-dimensional array; axes of length one before or behind do not count.
     pub(crate) fn rows_columns(&self) -> Parsed<(usize, usize)> {
         match self.shape[..] {
-            [rows, columns] => Ok((rows, columns)),
-            _ => Err(Flaw::new(
-                format!("an array of shape {:?}", self.shape),
-                "2 dimensions: rows and columns",
-            )),
+            [rows, columns] => return Ok((rows, columns)),
+            [1, rows, columns] | [rows, columns, 1] => return Ok((rows, columns)),
+            _ => {}
         }
+        let advice = match self.shape[..] {
+            [_] => ": array.reshape(-1, N), with N coordinates a point",
+            [_, _, _, ..] => ": array.reshape(len(array), -1) makes a point of every first index",
+            _ => "",
+        };
+        Err(Flaw::new(
+            format!("an array of shape {:?}", self.shape),
+            format!("2 dimensions: rows and columns{advice}"),
+        ))
     }
 
     /// The integers of an integer array; an empty array of any type passes.
     pub(crate) fn into_integers(self) -> Parsed<Vec<i64>> {
         match self.numbers {
             Numbers::Integer(v) => Ok(v),
-            Numbers::F32(v) if v.is_empty() => Ok(vec![]),
-            Numbers::F64(v) if v.is_empty() => Ok(vec![]),
+            other if other.len() == 0 => Ok(vec![]),
             _ => Err(Flaw::new("floating point numbers", "integers")),
         }
     }
 }
 
-/// Reads one array.
+/// Reads one array. Records become rows: a column for every number in them.
 pub(crate) fn parse(bytes: &[u8]) -> Parsed<Array> {
     if bytes.is_empty() {
         return Err(Flaw::new("an empty file", "a NumPy array"));
     }
-    check_header(bytes)?;
-    let mut rest = bytes;
-    let header = Header::from_reader(&mut rest)
-        .map_err(|e| Flaw::new(format!("a bad header ({e})"), "a NumPy array"))?;
-    let descriptor = header
-        .type_descriptor
-        .as_string()
-        .ok_or_else(|| Flaw::new("an array of records", "an array of numbers"))?;
-    let (big, kind) = match descriptor.split_at_checked(1) {
-        Some(("<" | "|" | "=", kind)) => (false, kind),
-        Some((">", kind)) => (true, kind),
-        _ => (false, descriptor.as_str()),
-    };
-    let size = match kind {
-        "f8" | "i8" | "u8" => 8,
-        "f4" | "i4" | "u4" => 4,
-        "i2" | "u2" => 2,
-        "i1" | "u1" => 1,
-        _ => {
-            return Err(Flaw::new(
-                format!("an array of type {}", excerpt(descriptor)),
-                "float32, float64 or integers",
-            ));
-        }
-    };
+    let (header, data) = npy_header::parse(bytes)?;
+    let pickled = header.fields.iter().any(|f| f.kind.starts_with('O'));
     let promised = header
         .shape
         .iter()
-        .try_fold(size, |product: usize, &n| product.checked_mul(n));
-    if promised != Some(rest.len()) {
+        .try_fold(header.entry(), |product, &n| product.checked_mul(n));
+    if promised != Some(data.len()) && !pickled {
         return Err(Flaw::new(
-            format!("{} bytes of data", rest.len()),
+            format!("{} bytes of data", data.len()),
             match promised {
                 Some(bytes) => format!("{bytes}, as the header promises shape {:?}", header.shape),
                 None => format!(
@@ -119,10 +151,15 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Array> {
             },
         ));
     }
-    let mut numbers = decode(kind, big, rest)?;
+    if header.record {
+        return records(&header, data);
+    }
+    let field = &header.fields[0];
+    let mut numbers = decode(&field.kind, field.big, data)?;
     let shape = header.shape;
-    if header.layout.is_fortran() && shape.len() > 1 {
-        let [rows, columns] = shape[..] else {
+    if header.fortran && shape.iter().filter(|&&n| n != 1).count() > 1 {
+        let long: Vec<usize> = shape.iter().copied().filter(|&n| n != 1).collect();
+        let [rows, columns] = long[..] else {
             return Err(Flaw::new(
                 format!("an array of shape {shape:?}"),
                 "at most 2 dimensions",
@@ -130,48 +167,64 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Array> {
         };
         numbers = numbers.transposed(columns, rows);
     }
-    Ok(Array { shape, numbers })
+    Ok(Array {
+        half: field.kind == "f2",
+        ..Array::new(shape, numbers)
+    })
 }
 
-/// Bounds the length and nesting of the header, which a recursive parser reads next.
-fn check_header(bytes: &[u8]) -> Parsed<()> {
-    let not_an_array = || {
-        Flaw::new(
-            "something else",
-            "a NumPy array, which starts with \\x93NUMPY",
-        )
-    };
-    let truncated = || Flaw::new("a truncated header", "a NumPy array");
-    if !bytes.starts_with(b"\x93NUMPY") {
-        return Err(not_an_array());
-    }
-    let (start, length) = match bytes.get(6..12) {
-        Some(&[1, _, a, b, _, _]) => (10, u16::from_le_bytes([a, b]) as usize),
-        Some(&[_, _, a, b, c, d]) => (12, u32::from_le_bytes([a, b, c, d]) as usize),
-        _ => return Err(truncated()),
-    };
-    if length > LONGEST_HEADER {
+/// Records as rows, their numbers as columns; texts and gaps are left out.
+fn records(header: &Header, data: &[u8]) -> Parsed<Array> {
+    let entry = header.entry();
+    let is_number = |f: &&Field| f.count > 0 && matches!(f.kind.as_bytes()[0], b'f' | b'i' | b'u');
+    if entry == 0 || header.shape.len() != 1 || !header.fields.iter().any(|f| is_number(&f)) {
         return Err(Flaw::new(
-            format!("a header of {length} bytes"),
-            format!("at most {LONGEST_HEADER}"),
+            format!(
+                "records of {} fields in shape {:?}",
+                header.fields.len(),
+                header.shape
+            ),
+            "a list of records with numbers",
         ));
     }
-    let header = bytes.get(start..start + length).ok_or_else(truncated)?;
-    let mut depth = 0_usize;
-    for byte in header {
-        match byte {
-            b'(' | b'[' | b'{' => depth += 1,
-            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
-            _ => {}
+    let rows = data.len() / entry;
+    let mut names = Vec::new();
+    let mut columns: Vec<Numbers> = Vec::new();
+    let mut from = 0;
+    for field in &header.fields {
+        let size = field.count * field.width;
+        if is_number(&field) {
+            let packed: Vec<u8> = data
+                .chunks_exact(entry)
+                .flat_map(|row| &row[from..from + size])
+                .copied()
+                .collect();
+            let numbers =
+                decode(&field.kind, field.big, &packed).map_err(|f| f.within(&field.name))?;
+            for k in 0..field.count {
+                columns.push(numbers.columns(field.count, &[k]));
+                names.push(if field.count == 1 {
+                    field.name.clone()
+                } else {
+                    format!("{}[{k}]", field.name)
+                });
+            }
         }
-        if depth > 8 {
-            return Err(Flaw::new(
-                "a header of nested brackets",
-                "an array of numbers",
-            ));
-        }
+        from += size;
     }
-    Ok(())
+    let width = columns.len();
+    let all = (0..rows * width).map(|at| columns[at % width].at(at / width));
+    // Exact: single precision was widened, and is kept only when every column is of it.
+    let numbers = if columns.iter().all(|c| matches!(c, Numbers::F32(_))) {
+        Numbers::F32(all.map(|x| x as f32).collect())
+    } else {
+        Numbers::F64(all.collect())
+    };
+    Ok(Array {
+        names: Some(names),
+        half: header.fields.iter().any(|f| f.kind == "f2"),
+        ..Array::new(vec![rows, width], numbers)
+    })
 }
 
 /// Numbers of a type named as NumPy does (`f8`, `i4`, ...), one after the other.
@@ -189,6 +242,8 @@ pub(crate) fn decode(kind: &str, big: bool, bytes: &[u8]) -> Parsed<Numbers> {
     }
     Ok(match kind {
         "f8" => Numbers::F64(all!(f64, 8).collect()),
+        // Widening is exact.
+        "f2" => Numbers::F32(all!(f16, 2).map(f32::from).collect()),
         "f4" => Numbers::F32(all!(f32, 4).collect()),
         "i8" => Numbers::Integer(all!(i64, 8).collect()),
         "i4" => Numbers::Integer(all!(i32, 4).map(i64::from).collect()),
@@ -211,63 +266,163 @@ pub(crate) fn decode(kind: &str, big: bool, bytes: &[u8]) -> Parsed<Numbers> {
                 .collect::<Parsed<_>>()?,
         ),
         _ => {
+            let found = match kind {
+                "b1" => "truth values".to_string(),
+                "c8" | "c16" => format!("complex numbers ({kind})"),
+                "f12" | "f16" => format!("long doubles ({kind})"),
+                "O" | "O8" => "Python objects".into(),
+                _ => format!("type {}", excerpt(kind)),
+            };
             return Err(Flaw::new(
-                format!("numbers of type {kind}"),
-                "float32, float64 or integers",
+                format!("an array of {found}"),
+                format!("float16, float32, float64 or integers: {SAVE_AGAIN}"),
             ));
         }
     })
 }
 
-/// The bytes of an array file.
-pub(crate) fn bytes<A: WritableElement, D: Dimension>(array: ArrayView<'_, A, D>) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    array
-        .write_npy(&mut bytes)
-        .expect("a short header and memory that grows");
+/// A number as NumPy stores it.
+pub(crate) trait Stored: Copy {
+    /// NumPy's name of the type, with the byte order.
+    const DESCRIPTOR: &'static str;
+    /// Appends its bytes.
+    fn put(self, bytes: &mut Vec<u8>);
+}
+
+macro_rules! stored {
+    ($($type:ty: $name:literal),*) => {$(
+        impl Stored for $type {
+            const DESCRIPTOR: &'static str = $name;
+            fn put(self, bytes: &mut Vec<u8>) {
+                bytes.extend(self.to_le_bytes());
+            }
+        }
+    )*};
+}
+stored!(f64: "<f8", i64: "<i8", u8: "|u1");
+#[cfg(test)]
+stored!(f16: "<f2", f32: "<f4", i8: "|i1", i16: "<i2", i32: "<i4", u16: "<u2", u32: "<u4", u64: "<u8");
+
+/// The bytes of an array file, numbers in row order.
+///
+/// # Panics
+/// When the shape is not that of so many numbers.
+pub(crate) fn bytes<T: Stored>(shape: &[usize], numbers: &[T]) -> Vec<u8> {
+    assert_eq!(shape.iter().product::<usize>(), numbers.len());
+    let mut tuple: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    if tuple.len() == 1 {
+        tuple.push(String::new());
+    }
+    let text = format!(
+        "{{'descr': '{}', 'fortran_order': False, 'shape': ({})}}",
+        T::DESCRIPTOR,
+        tuple.join(", ").trim_end()
+    );
+    // The data begin at a multiple of 64 bytes, behind spaces and the end of the line.
+    let length = (text.len() + 11).next_multiple_of(64) - 10;
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((length as u16).to_le_bytes());
+    bytes.extend(text.bytes());
+    bytes.resize(9 + length, b' ');
+    bytes.push(b'\n');
+    bytes.reserve(size_of_val(numbers));
+    numbers.iter().for_each(|x| x.put(&mut bytes));
     bytes
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ndarray::{Array1, Array2, ShapeBuilder};
 
-    fn with_header(text: &str, data: usize) -> Vec<u8> {
+    fn with_header(text: &str, data: &[u8]) -> Vec<u8> {
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
         bytes.extend((text.len() as u16).to_le_bytes());
         bytes.extend(text.as_bytes());
-        bytes.extend(vec![0; data]);
+        bytes.extend(data);
         bytes
+    }
+
+    fn doubles(numbers: &[f64]) -> Vec<u8> {
+        numbers.iter().flat_map(|x| x.to_le_bytes()).collect()
+    }
+
+    #[test]
+    fn the_bytes_are_those_that_numpy_writes() {
+        let bytes = bytes(&[2], &[1_u8, 2]);
+        let text = "{'descr': '|u1', 'fortran_order': False, 'shape': (2,)}";
+        assert_eq!(bytes.len(), 128 + 2);
+        assert!(bytes[10..].starts_with(text.as_bytes()));
+        assert_eq!(&bytes[126..], [b' ', b'\n', 1, 2]);
+        assert_eq!(parse(&bytes).unwrap().shape, [2]);
     }
 
     #[test]
     fn fortran_order_and_every_integer() {
-        let f = Array2::from_shape_vec((2, 3).f(), vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]).unwrap();
-        let back = parse(&bytes(f.view())).unwrap();
-        assert_eq!(back.shape, [2, 3]);
-        assert_eq!(
-            back.numbers,
-            Numbers::F64(vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
-        );
+        for shape in ["(2, 3)", "(1, 2, 3)", "(2, 3, 1)"] {
+            let header = format!("{{'descr': '<f8', 'fortran_order': True, 'shape': {shape}}}");
+            let bytes = with_header(&header, &doubles(&[1.0, 4.0, 2.0, 5.0, 3.0, 6.0]));
+            let back = parse(&bytes).unwrap();
+            assert_eq!(back.rows_columns().unwrap(), (2, 3));
+            assert_eq!(
+                back.numbers,
+                Numbers::F64(vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+            );
+        }
         macro_rules! kind {
             ($($type:ty),*) => {$(
-                let a = Array1::from(vec![0 as $type, 7, <$type>::MAX / 2]);
-                let back = parse(&bytes(a.view())).unwrap().into_integers().unwrap();
+                let a = [0 as $type, 7, <$type>::MAX / 2];
+                let back = parse(&bytes(&[3], &a)).unwrap().into_integers().unwrap();
                 assert_eq!(back, [0, 7, (<$type>::MAX / 2) as i64]);
             )*};
         }
         kind!(i8, i16, i32, i64, u8, u16, u32, u64);
-        let too_large = bytes(Array1::from(vec![1, u64::MAX]).view());
+        let too_large = bytes(&[2], &[1, u64::MAX]);
         assert!(parse(&too_large).unwrap_err().found.contains("entry 1"));
     }
 
     #[test]
-    fn big_endian() {
+    fn big_endian_and_half_precision() {
         let header = "{'descr': '>i2', 'fortran_order': False, 'shape': (1,), }\n";
-        let mut bytes = with_header(header, 2);
-        *bytes.last_mut().unwrap() = 5;
-        assert_eq!(parse(&bytes).unwrap().numbers, Numbers::Integer(vec![5]));
+        let array = parse(&with_header(header, &[0, 5])).unwrap();
+        assert_eq!(array.numbers, Numbers::Integer(vec![5]));
+        let half = [0.5, -0.1].map(f16::from_f32);
+        let array = parse(&bytes(&[1, 2], &half)).unwrap();
+        assert!(array.half);
+        assert_eq!(array.numbers, Numbers::F32(half.map(f32::from).to_vec()));
+    }
+
+    #[test]
+    fn records_become_columns() {
+        let header = "{'descr': [('x', '<f4'), ('name', '|S2'), ('n', '<f4', (2,))], \
+                      'fortran_order': False, 'shape': (2,)}";
+        let mut data = Vec::new();
+        for row in [[1.0_f32, 2.0, 3.0], [4.0, 5.0, 6.0]] {
+            data.extend(row[0].to_le_bytes());
+            data.extend(b"ab");
+            data.extend(row[1..].iter().flat_map(|x| x.to_le_bytes()));
+        }
+        let array = parse(&with_header(header, &data)).unwrap();
+        assert_eq!(array.shape, [2, 3]);
+        assert_eq!(array.names.unwrap(), ["x", "n[0]", "n[1]"]);
+        assert_eq!(
+            array.numbers,
+            Numbers::F32(vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+        );
+    }
+
+    #[test]
+    fn what_is_no_number_is_told_by_its_name() {
+        for (kind, width, found) in [
+            ("|b1", 1, "truth values"),
+            ("<c16", 16, "complex numbers"),
+            ("<f16", 16, "long doubles"),
+            ("|O", 3, "Python objects"),
+            ("<U4", 16, "type \"U4\""),
+        ] {
+            let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': (1, 1)}}");
+            let flaw = parse(&with_header(&header, &vec![0; width])).unwrap_err();
+            assert!(flaw.found.contains(found), "{flaw:?}");
+        }
     }
 
     #[test]
@@ -278,12 +433,12 @@ mod tests {
             "(2, 1)",
         ] {
             let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}\n");
-            let flaw = parse(&with_header(&text, 8)).unwrap_err();
+            let flaw = parse(&with_header(&text, &[0; 8])).unwrap_err();
             assert_eq!(flaw.found, "8 bytes of data");
             assert!(flaw.expected.contains("header promises"), "{flaw:?}");
         }
         let nested = "(".repeat(60_000);
-        let flaw = parse(&with_header(&nested, 0)).unwrap_err();
+        let flaw = parse(&with_header(&nested, &[])).unwrap_err();
         assert!(flaw.found.contains("nested"), "{flaw:?}");
     }
 }

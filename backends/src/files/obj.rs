@@ -5,6 +5,7 @@
 
 use super::error::{Flaw, Parsed, excerpt};
 use super::mesh::{Parts, Sheet};
+use super::npy::{Array, Numbers};
 use super::table::{number, text};
 use std::fmt::Write;
 
@@ -20,7 +21,7 @@ pub(crate) fn bytes(sheet: &Sheet<'_>) -> Vec<u8> {
     if !complex.triangles.is_empty() {
         out.push_str("g surface\n");
     }
-    for &[a, b, c] in &complex.triangles {
+    for &[a, b, c] in &sheet.triangles {
         let _ = writeln!(out, "f {} {} {}", one(a), one(b), one(c));
     }
     let mut curves = complex.curve_edges.clone();
@@ -34,8 +35,21 @@ pub(crate) fn bytes(sheet: &Sheet<'_>) -> Vec<u8> {
     out.into_bytes()
 }
 
+/// Reads the vertices alone.
+pub(crate) fn parse_points(bytes: &[u8]) -> Parsed<Array> {
+    let coordinates = read(bytes, false)?.coordinates;
+    Ok(Array::new(
+        vec![coordinates.len() / 3, 3],
+        Numbers::F64(coordinates),
+    ))
+}
+
 /// Reads the file: `v`, `f` of three corners, `l`, `g`; everything else is skipped.
 pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
+    read(bytes, true)
+}
+
+fn read(bytes: &[u8], with_faces: bool) -> Parsed<Parts> {
     let mut parts = Parts {
         dimension: 3,
         ..Parts::default()
@@ -55,7 +69,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
                     return Err(Flaw::line(line, format!("{found} numbers"), "x, y, z"));
                 }
             }
-            Some("f") => {
+            Some("f") if with_faces => {
                 let corners = corners(line, fields, parts.coordinates.len() / 3)?;
                 let &[a, b, c] = &corners[..] else {
                     return Err(Flaw::line(
@@ -66,7 +80,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
                 };
                 parts.triangles.push([a, b, c]);
             }
-            Some("l") => {
+            Some("l") if with_faces => {
                 let ends = corners(line, fields, parts.coordinates.len() / 3)?;
                 if ends.len() < 2 {
                     return Err(Flaw::line(

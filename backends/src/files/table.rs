@@ -1,18 +1,28 @@
-//! Tables of numbers in a text: `.csv`, `.txt`, plain `.xyz`.
+//! Tables of numbers in a text: `.csv`, `.tsv`, `.txt`, `.dat`, `.asc`, `.pts`, plain `.xyz`.
 //!
-//! The columns are separated by semicolons, commas or white space, whichever the first row shows
-//! (in that order). `#` starts a comment. A first row of
-//! names, none of which is or begins like a number, is a header.
+//! The columns are separated by semicolons, tabs, commas or white space, whichever the first row
+//! shows (in that order). `#`, `%` and `//` start a comment. Up to two rows of names, none of which
+//! is or begins like a number, are a header; so is a comment right before the first row that has
+//! a name for every column. A first row of one whole number is the number of rows.
 
+use super::columns::{ColumnChoice, Picked, pick};
 use super::error::{Flaw, Parsed, excerpt};
 use crosscap_core::{PointCloud, Scalar};
 use std::fmt::Write;
 
+/// Most rows of names before the numbers: names, and units or a system of coordinates.
+const MOST_HEADERS: usize = 2;
+
 /// A table: rows of equal length in row order.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Table {
+    /// Columns that were kept.
     pub(crate) columns: usize,
     pub(crate) numbers: Vec<f64>,
+    /// Names of all columns of the file.
+    pub(crate) names: Option<Vec<String>>,
+    /// Which columns of the file were kept, and why.
+    pub(crate) picked: Picked,
 }
 
 /// The bytes as text, or the line at which they stop being one.
@@ -37,108 +47,295 @@ pub(crate) fn number(field: &str, line: usize, column: usize) -> Parsed<f64> {
     }
 }
 
-/// Reads a table.
-pub(crate) fn parse(bytes: &[u8]) -> Parsed<Table> {
-    let text = text(bytes)?;
-    let mut table = Table {
-        columns: 0,
-        numbers: vec![],
+/// Reads a table, of its columns those that are wanted.
+pub(crate) fn parse(bytes: &[u8], wanted: &ColumnChoice) -> Parsed<Table> {
+    let mut reader = Reader {
+        wanted,
+        separator: None,
+        headers: Vec::new(),
+        comment: None,
+        promised: None,
+        point: false,
+        comma: false,
+        total: 0,
+        table: None,
     };
-    let first = text
-        .lines()
-        .map(without_comment)
-        .find(|line| !line.is_empty());
-    let Some(first) = first else {
-        return Err(Flaw::new("no row of numbers", "at least one point"));
-    };
-    let delimiter = [';', ','].into_iter().find(|&d| first.contains(d));
-    match delimiter {
-        Some(delimiter) => {
-            let mut reader = csv::ReaderBuilder::new()
-                .delimiter(delimiter as u8)
-                .has_headers(false)
-                .flexible(true)
-                .comment(Some(b'#'))
-                .trim(csv::Trim::All)
-                .from_reader(text.as_bytes());
-            let mut record = csv::StringRecord::new();
-            let mut header_may_come = true;
-            loop {
-                let more = reader
-                    .read_record(&mut record)
-                    .map_err(|e| Flaw::new(e.to_string(), "a table of numbers"))?;
-                if !more {
-                    break;
-                }
-                // The position of a record is that of the blank lines and comments before it.
-                let (mut line, byte) = record
-                    .position()
-                    .map_or((1, 0), |p| (p.line() as usize, p.byte() as usize));
-                line += text[byte.min(text.len())..]
-                    .lines()
-                    .take_while(|row| row.is_empty() || row.starts_with('#'))
-                    .count();
-                let fields: Vec<&str> = record
-                    .iter()
-                    .map(|f| f.split('#').next().unwrap_or("").trim())
-                    .collect();
-                if fields.iter().all(|f| f.is_empty()) && fields.len() < 2 {
-                    continue;
-                }
-                table.row(line, &fields, &mut header_may_come)?;
+    let mut fields = Vec::new();
+    for (at, line) in text(bytes)?.lines().enumerate() {
+        let row = without_comment(line);
+        if row.is_empty() {
+            if reader.table.is_none() && !line.trim().is_empty() {
+                reader.comment = Some(line);
             }
+            continue;
         }
-        None => {
-            let mut header_may_come = true;
-            let mut fields = Vec::new();
-            for (at, line) in text.lines().enumerate() {
-                fields.clear();
-                fields.extend(without_comment(line).split_whitespace());
-                if !fields.is_empty() {
-                    table.row(at + 1, &fields, &mut header_may_come)?;
-                }
-            }
-        }
+        let separator = *reader.separator.get_or_insert_with(|| Separator::of(row));
+        separator.split(row, &mut fields);
+        reader.row(at + 1, &fields)?;
     }
-    if table.columns == 0 {
-        return Err(Flaw::new(
-            "a header and no row of numbers",
-            "at least one point",
-        ));
-    }
-    Ok(table)
+    reader.finish()
 }
 
 fn without_comment(line: &str) -> &str {
-    line.split('#').next().unwrap_or("").trim()
+    let line = line.trim_matches([' ', '\r']);
+    if line.trim_start().starts_with('%') || line.trim_start().starts_with("//") {
+        return "";
+    }
+    let row = line.split('#').next().unwrap_or("");
+    // Tabs at the end are empty fields; a row of nothing else is none.
+    if row.trim().is_empty() { "" } else { row }
 }
 
-impl Table {
-    fn row(&mut self, line: usize, fields: &[&str], header_may_come: &mut bool) -> Parsed<()> {
-        if std::mem::take(header_may_come) && fields.iter().all(|f| is_name(f)) {
-            return Ok(());
+/// What stands between two columns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Separator {
+    White,
+    Char(char),
+}
+
+impl Separator {
+    /// The separator that a first row shows.
+    fn of(row: &str) -> Self {
+        let mut fields = Vec::new();
+        let mut split = |separator: Self| {
+            separator.split(row, &mut fields);
+            fields.clone()
+        };
+        if row.contains(';') {
+            return Self::Char(';');
         }
-        if self.columns == 0 {
-            self.columns = fields.len();
+        if row.contains('\t') {
+            let by_tab = split(Self::Char('\t'));
+            let mixed = |f: &&str| f.ends_with(',') || (f.contains(' ') && !is_name(f));
+            if by_tab.len() > 1 && !by_tab.iter().any(mixed) {
+                return Self::Char('\t');
+            }
         }
-        if fields.len() != self.columns {
-            return Err(Flaw::line(
-                line,
-                format!("{} columns", fields.len()),
-                format!("{} as in the first row", self.columns),
-            ));
+        if row.contains(',') {
+            let by_comma = split(Self::Char(','));
+            let spaced = by_comma
+                .iter()
+                .any(|f| f.contains(char::is_whitespace) && !is_name(f));
+            // 1,5 2,5 are two numbers with a decimal comma.
+            if !(spaced && split(Self::White).iter().all(|f| with_comma(f).is_some())) {
+                return Self::Char(',');
+            }
         }
-        for (at, field) in fields.iter().enumerate() {
-            self.numbers.push(number(field, line, at + 1)?);
-        }
-        Ok(())
+        Self::White
     }
+
+    /// The fields of a row, without white space and quotes around them.
+    fn split<'a>(self, row: &'a str, fields: &mut Vec<&'a str>) {
+        fields.clear();
+        let quoted = row.contains('"');
+        match self {
+            Self::White if !quoted => fields.extend(row.split_whitespace()),
+            // A row that has no tab is not taken for one field.
+            Self::Char('\t') if !row.contains('\t') => Self::White.split(row, fields),
+            Self::Char(c) if !quoted => fields.extend(row.split(c).map(str::trim)),
+            _ => {
+                let mut open = false;
+                let parts = row.split(|c: char| {
+                    open ^= c == '"';
+                    !open
+                        && match self {
+                            Self::White => c.is_whitespace(),
+                            Self::Char(separator) => c == separator,
+                        }
+                });
+                fields.extend(
+                    parts
+                        .filter(|part| self != Self::White || !part.is_empty())
+                        .map(|part| part.trim().trim_matches('"').trim()),
+                );
+            }
+        }
+    }
+}
+
+/// A number with a decimal comma, as text with a point.
+fn with_comma(field: &str) -> Option<String> {
+    let once = field.bytes().filter(|&b| b == b',').count() <= 1 && !field.contains('.');
+    let text = field.replace(',', ".");
+    (once && text.parse::<f64>().is_ok()).then_some(text)
 }
 
 /// Whether a field can head a column: no number, and nothing that was meant as one.
 fn is_name(field: &str) -> bool {
     field.parse::<f64>().is_err()
         && !field.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+}
+
+/// A table that is being read.
+struct Reader<'a> {
+    wanted: &'a ColumnChoice,
+    separator: Option<Separator>,
+    headers: Vec<Vec<String>>,
+    /// The last comment before the first row.
+    comment: Option<&'a str>,
+    /// The line and the number of rows that it promises.
+    promised: Option<(usize, usize)>,
+    /// Whether a decimal point was seen, and a decimal comma.
+    point: bool,
+    comma: bool,
+    /// Columns of the file.
+    total: usize,
+    table: Option<Table>,
+}
+
+impl Reader<'_> {
+    fn row(&mut self, line: usize, fields: &[&str]) -> Parsed<()> {
+        if self.table.is_none() {
+            if self.headers.len() < MOST_HEADERS && fields.iter().all(|f| is_name(f)) {
+                self.headers
+                    .push(fields.iter().map(ToString::to_string).collect());
+                // A title shows nothing of the rows.
+                self.separator = None;
+                return Ok(());
+            }
+            if let ([count], None) = (fields, self.promised)
+                && let Ok(count) = count.parse()
+            {
+                self.promised = Some((line, count));
+                // The next row shows what separates the columns.
+                self.separator = None;
+                return Ok(());
+            }
+            if let Some((_, alone)) = self.promised
+                && fields.len() == 1
+            {
+                // No count but a table of one column.
+                self.begin(line, 1)?;
+                self.number(line - 1, 1, &alone.to_string())?;
+                self.promised = None;
+            } else {
+                let trailing = fields.len() > 2 && fields.last() == Some(&"");
+                self.begin(line, fields.len() - usize::from(trailing))?;
+            }
+        }
+        let fields = match fields {
+            [all @ .., ""] if all.len() == self.total => all,
+            all => all,
+        };
+        if fields.len() != self.total {
+            return Err(Flaw::line(
+                line,
+                format!("{} columns", fields.len()),
+                format!("{} as in the first row", self.total),
+            ));
+        }
+        let kept = self.table.as_ref().map_or(0, |t| t.columns);
+        for k in 0..kept {
+            let column = self.table.as_ref().map_or(0, |t| t.picked.kept[k]);
+            self.number(line, column + 1, fields[column])?;
+        }
+        Ok(())
+    }
+
+    fn number(&mut self, line: usize, column: usize, field: &str) -> Parsed<()> {
+        let point = field.contains('.');
+        let comma = if field.contains(',') && !matches!(self.separator, Some(Separator::Char(',')))
+        {
+            with_comma(field)
+        } else {
+            None
+        };
+        self.point |= point;
+        self.comma |= comma.is_some();
+        if self.point && self.comma {
+            return Err(Flaw::field(
+                line,
+                column,
+                excerpt(field),
+                "decimal commas alone, or decimal points alone",
+            ));
+        }
+        let x = number(comma.as_deref().unwrap_or(field), line, column).map_err(|flaw| {
+            let advice = if flaw.found.starts_with('"') {
+                "a number: leave the row out, or the column by --columns"
+            } else {
+                return flaw;
+            };
+            Flaw {
+                expected: advice.into(),
+                ..flaw
+            }
+        })?;
+        if let Some(table) = &mut self.table {
+            table.numbers.push(x);
+        }
+        Ok(())
+    }
+
+    /// The first row of numbers is there: which columns are wanted?
+    fn begin(&mut self, line: usize, total: usize) -> Parsed<()> {
+        let names = self.names(line, total)?;
+        let picked = pick(names.as_deref(), total, self.wanted)?;
+        self.total = total;
+        self.table = Some(Table {
+            columns: picked.kept.len(),
+            numbers: vec![],
+            names,
+            picked,
+        });
+        Ok(())
+    }
+
+    /// Names of all columns, from the header or from the comment before the first row.
+    fn names(&self, line: usize, total: usize) -> Parsed<Option<Vec<String>>> {
+        if let Some(header) = self.headers.first() {
+            let mut names = header.clone();
+            if names.len() == total + 1 && names.last().is_some_and(String::is_empty) {
+                names.pop();
+            }
+            // Where rows have names, their column often has none.
+            if names.len() + 1 == total {
+                names.insert(0, String::new());
+            }
+            // Two words are a heading of the table, and name no column.
+            if names.len() == total || self.separator == Some(Separator::White) {
+                return Ok((names.len() == total).then_some(names));
+            }
+            return Err(Flaw::line(
+                line,
+                format!("{total} columns"),
+                format!("{}, as there are names", names.len()),
+            ));
+        }
+        let words = self
+            .comment
+            .map(|c| c.trim_start_matches(['#', '%', '/', ' ', '\t']));
+        Ok(words.and_then(|words| {
+            let names: Vec<String> = words
+                .split(|c: char| c.is_whitespace() || ",;".contains(c))
+                .filter(|w| !w.is_empty())
+                .map(String::from)
+                .collect();
+            (names.len() == total).then_some(names)
+        }))
+    }
+
+    fn finish(self) -> Parsed<Table> {
+        let Some(table) = self.table else {
+            return Err(Flaw::new(
+                match (self.headers.is_empty(), self.promised) {
+                    (_, Some((_, alone))) => format!("one number, {alone}"),
+                    (true, None) => "no row of numbers".into(),
+                    (false, None) => "a header and no row of numbers".into(),
+                },
+                "at least one point",
+            ));
+        };
+        let rows = table.numbers.len() / table.columns.max(1);
+        match self.promised {
+            Some((line, count)) if count != rows => Err(Flaw::line(
+                line,
+                format!("the promise of {count} rows"),
+                format!("{rows}, as there are"),
+            )),
+            _ => Ok(table),
+        }
+    }
 }
 
 /// Rows of numbers, as few digits as give the same numbers back.
@@ -161,8 +358,9 @@ pub(crate) fn bytes<S: Scalar>(cloud: &PointCloud<S>, delimiter: char) -> Vec<u8
 mod tests {
     use super::*;
 
-    fn numbers(text: &str) -> Vec<f64> {
-        parse(text.as_bytes()).unwrap().numbers
+    fn table(text: &str) -> Table {
+        parse(text.as_bytes(), &ColumnChoice::Automatic)
+            .unwrap_or_else(|f| panic!("{text:?}: {f:?}"))
     }
 
     #[test]
@@ -172,13 +370,65 @@ mod tests {
             "1,2.5\n-3e4,4\n",
             "1;2.5\n-3e4;4",
             "1 2.5\r\n-3e4\t 4\r\n",
+            "1\t2.5\r\n-3e4 4\r\n",
             "x,y\n\n1, 2.5\n# between\n-3e4 ,4 # behind\n",
             "\u{feff}# first\n  x y\n 1   2.5\n-3e4 4\n\n",
             "# a, b; c\n\"1\",\"2.5\"\n-3e4,4\n",
             "# a, b; c\n1 2.5\n-3e4 4\n",
+            "% of MATLAB\n1 2.5\n-3e4 4\n",
+            "// of a scanner\n1 2.5\n-3e4 4\n",
+            "X [m],Y [m]\n(local),(local)\n1,2.5\n-3e4,4\n",
+            "x,y,\n1,2.5,\n-3e4,4,\n",
+            "X of it\tY of it\n1\t2.5\n-3e4\t4\n",
+            "1;2,5\n-3e4;4",
+            "1,0 2,5\n-3e4 4",
+            "1,0\t2,5\n-3e4\t4",
+            "2\n1,2.5\n-3e4,4\n",
         ] {
-            assert_eq!(numbers(text), expected, "{text:?}");
+            assert_eq!(table(text).numbers, expected, "{text:?}");
         }
+    }
+
+    #[test]
+    fn named_positions_are_taken_alone() {
+        for text in [
+            ",x,y,z\n0,1,2,3\n1,4,5,6\n",
+            "x,y,z,r,g,b\n1,2,3,9,9,9\n4,5,6,9,9,9\n",
+            "x,y,z,class\n1,2,3,ground\n4,5,6,\"tall, green\"\n",
+            "Z;X;name;Y\n3;1;a;2\n6;4;b;5\n",
+            "\"x\" \"y\" \"z\"\n\"row 1\" 1 2 3\n\"row 2\" 4 5 6\n",
+            "//X Y Z R\n1 2 3 9\n4 5 6 9\n",
+            "# x, y, z, time\n1 2 3 9\n4 5 6 9\n",
+            "Points:0,Points:1,Points:2,t\n1,2,3,0\n4,5,6,0\n",
+        ] {
+            assert_eq!(
+                table(text).numbers,
+                [1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+                "{text:?}"
+            );
+        }
+        let four = table("x,y,z,w\n1,2,3,4\n");
+        assert_eq!(four.columns, 4);
+    }
+
+    #[test]
+    fn columns_are_chosen_by_number_and_name() {
+        let text = "time,name,Height (m),x\n0,a,1,2\n1,b,3,4\n";
+        let chosen = |wanted: &str| parse(text.as_bytes(), &wanted.parse().unwrap());
+        assert_eq!(chosen("3,height").unwrap().numbers, [2.0, 1.0, 4.0, 3.0]);
+        assert_eq!(chosen("0,2-3").unwrap().columns, 3);
+        for (wanted, found) in [
+            ("4,0", "4 columns: time"),
+            ("x,y", "4 columns"),
+            ("0,0", "twice"),
+        ] {
+            assert!(
+                chosen(wanted).unwrap_err().found.contains(found),
+                "{wanted}"
+            );
+        }
+        let flaw = chosen("all").unwrap_err();
+        assert!(flaw.expected.contains("--columns"), "{flaw:?}");
     }
 
     #[test]
@@ -189,9 +439,12 @@ mod tests {
             ("1 2\n3 4 5\n", 2, None, "3 columns"),
             ("1 2\n3 inf\n", 2, Some(2), "inf"),
             ("nan;2\n", 1, Some(1), "NaN"),
-            ("1,5;2,5\n", 1, Some(1), "\"1,5\""),
+            ("1,5;2,5\n1.5;2\n", 2, Some(1), "\"1.5\""),
+            ("x,y,z\n1,2\n", 2, None, "2 columns"),
+            ("a\nb\nc\n1 2\n", 3, Some(1), "\"c\""),
+            ("5\n1 2\n3 4\n", 1, None, "the promise of 5 rows"),
         ] {
-            let flaw = parse(text.as_bytes()).unwrap_err();
+            let flaw = parse(text.as_bytes(), &ColumnChoice::Automatic).unwrap_err();
             let place = crate::files::Place::Line { line, field };
             assert_eq!(
                 (&flaw.place, flaw.found.as_str()),

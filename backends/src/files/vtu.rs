@@ -1,175 +1,200 @@
 //! Unstructured grids of VTK in XML, `.vtu`: what ParaView opens.
 //!
-//! Written by `vtkio`: triangles, and lines for the curve edges with the cell data `cells`, the
-//! number of cells that meet there (-1 at triangles). Read by our own reader on `roxmltree`,
-//! because that of `vtkio` panics on a data array that is too short and on a missing one; it takes
-//! arrays in the formats `ascii` and `binary` without compression.
+//! Triangles, and lines for the curve edges with the cell data `cells`, the number of cells that
+//! meet there (-1 at triangles). What the metadata tell stands in the field data, a number or a
+//! text each, with the Betti numbers; and as a whole in `metadata`, a JSON text, byte by byte.
 
-use super::error::{Flaw, Parsed, excerpt};
+use super::error::{Flaw, Parsed};
 use super::mesh::{Parts, RawCurve, Sheet};
-use super::npy::{self, Numbers};
-use super::table::text;
+use super::vtk_xml::{File, Source};
 use base64::Engine;
-use roxmltree::{Document, Node};
-use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
-    UnstructuredGridPiece, Version, VertexNumbers, Vtk,
-};
+use crosscap_algorithms::homology::homology;
+use serde_json::Value;
+use std::fmt::Write;
 
 /// VTK's number for a line.
 const LINE: i64 = 3;
 /// VTK's number for a triangle.
 const TRIANGLE: i64 = 5;
 
-/// Deepest nesting of elements that is handed to the parser, which recurses; a grid needs 5.
-const DEEPEST: usize = 64;
+/// Most numbers in a list of the metadata that becomes an array of its own.
+const LONGEST_LIST: usize = 64;
+
+/// A number as VTK stores it.
+trait Stored: Copy {
+    const TYPE: &'static str;
+    fn put(self, bytes: &mut Vec<u8>);
+}
+
+macro_rules! stored {
+    ($($type:ty: $name:literal),*) => {$(
+        impl Stored for $type {
+            const TYPE: &'static str = $name;
+            fn put(self, bytes: &mut Vec<u8>) {
+                bytes.extend(self.to_le_bytes());
+            }
+        }
+    )*};
+}
+stored!(f64: "Float64", i64: "Int64", i32: "Int32", u8: "UInt8");
+
+/// An array: the number of its bytes and the bytes, in base64.
+fn array<T: Stored>(out: &mut String, name: &str, components: usize, all: &[T]) {
+    let size = size_of_val(all);
+    let mut bytes = Vec::with_capacity(8 + size);
+    bytes.extend((size as u64).to_le_bytes());
+    all.iter().for_each(|x| x.put(&mut bytes));
+    let packed = base64::engine::general_purpose::STANDARD.encode(bytes);
+    // Formatting into a string cannot fail.
+    let _ = writeln!(
+        out,
+        "<DataArray type=\"{}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
+         format=\"binary\">{packed}</DataArray>",
+        T::TYPE
+    );
+}
+
+/// An array that belongs to the grid as a whole.
+fn field<T: Stored + std::fmt::Debug>(out: &mut String, name: &str, all: &[T]) {
+    let numbers: Vec<String> = all.iter().map(|x| format!("{x:?}")).collect();
+    let _ = writeln!(
+        out,
+        "<DataArray type=\"{}\" Name=\"{name}\" NumberOfTuples=\"{}\" format=\"ascii\">{}</DataArray>",
+        T::TYPE,
+        all.len(),
+        numbers.join(" ")
+    );
+}
+
+/// Betti numbers, and what the metadata tell.
+fn fields(out: &mut String, sheet: &Sheet<'_>) {
+    if let Ok(found) = homology(&sheet.mesh.complex) {
+        let all = |numbers: [usize; 3]| numbers.map(|b| b as i64);
+        field(out, "betti", &all(found.betti_rational));
+        field(out, "betti_mod2", &all(found.betti_mod2));
+    }
+    if sheet.metadata.is_null() {
+        return;
+    }
+    scalars(out, "", sheet.metadata);
+    field(out, "metadata", sheet.metadata.to_string().as_bytes());
+}
+
+/// Every number, truth value and list of numbers, under the path that leads to it.
+fn scalars(out: &mut String, path: &str, value: &Value) {
+    match value {
+        Value::Object(all) => {
+            for (key, value) in all {
+                let clean = |c: char| c.is_alphanumeric() || "_-".contains(c);
+                let key: String = key.chars().filter(|&c| clean(c)).collect();
+                let path = if path.is_empty() {
+                    key
+                } else {
+                    format!("{path}.{key}")
+                };
+                scalars(out, &path, value);
+            }
+        }
+        Value::Bool(b) => field(out, path, &[u8::from(*b)]),
+        Value::Number(_) => number_list(out, path, std::slice::from_ref(value)),
+        Value::Array(all) if all.len() <= LONGEST_LIST => number_list(out, path, all),
+        _ => {}
+    }
+}
+
+fn number_list(out: &mut String, path: &str, all: &[Value]) {
+    let integers: Option<Vec<i64>> = all.iter().map(Value::as_i64).collect();
+    let floats: Option<Vec<f64>> = all.iter().map(Value::as_f64).collect();
+    match (integers, floats) {
+        _ if all.is_empty() => {}
+        (Some(integers), _) => field(out, path, &integers),
+        (None, Some(floats)) => field(out, path, &floats),
+        (None, None) => {}
+    }
+}
 
 /// The bytes of the file.
 pub(crate) fn bytes(sheet: &Sheet<'_>) -> Vec<u8> {
     let mesh = sheet.mesh;
     let complex = &mesh.complex;
-    let array = |name: &str, components: usize, data: IOBuffer| {
-        Attribute::DataArray(DataArray {
-            name: name.into(),
-            elem: ElementType::Generic(components as u32),
-            data,
-        })
-    };
-    let mut connectivity: Vec<u64> = Vec::new();
-    let mut offsets = Vec::new();
-    let mut cells = Vec::new();
+    let mut connectivity: Vec<i64> = Vec::new();
+    let mut offsets: Vec<i64> = Vec::new();
+    let mut cells: Vec<i32> = Vec::new();
     for edge in &complex.curve_edges {
-        connectivity.extend(edge.ends.map(u64::from));
-        offsets.push(connectivity.len() as u64);
+        connectivity.extend(edge.ends.map(i64::from));
+        offsets.push(connectivity.len() as i64);
         cells.push(i32::from(edge.cells));
     }
-    for triangle in &complex.triangles {
-        connectivity.extend(triangle.map(u64::from));
-        offsets.push(connectivity.len() as u64);
+    for triangle in &sheet.triangles {
+        connectivity.extend(triangle.map(i64::from));
+        offsets.push(connectivity.len() as i64);
         cells.push(-1);
     }
     let lines = complex.curve_edges.len();
-    let mut types = vec![CellType::Line; lines];
-    types.resize(offsets.len(), CellType::Triangle);
-    let mut point = vec![array(
-        "point_index",
-        1,
-        IOBuffer::I64(mesh.point_index.clone()),
-    )];
+    let mut types = vec![LINE as u8; lines];
+    types.resize(offsets.len(), TRIANGLE as u8);
+
+    let mut out = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
+         byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n",
+    );
+    fields(&mut out, sheet);
+    let _ = writeln!(
+        out,
+        "</FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>",
+        complex.vertices,
+        offsets.len()
+    );
+    array(&mut out, "point_index", 1, &mesh.point_index);
     if sheet.given || mesh.vertices.dimension() != 3 {
-        point.push(array(
+        let dimension = mesh.vertices.dimension();
+        array(
+            &mut out,
             "coordinates",
-            mesh.vertices.dimension(),
-            IOBuffer::F64(mesh.vertices.coordinates().to_vec()),
-        ));
+            dimension,
+            mesh.vertices.coordinates(),
+        );
     }
-    let mut cell = vec![array("cells", 1, IOBuffer::I32(cells))];
+    out += "</PointData>\n<CellData>\n";
+    array(&mut out, "cells", 1, &cells);
     if let Some(pieces) = sheet.pieces {
         let mut labels = vec![-1; lines];
         labels.extend_from_slice(pieces);
-        cell.push(array("piece", 1, IOBuffer::I64(labels)));
+        array(&mut out, "piece", 1, &labels);
     }
-    let grid = Vtk {
-        version: Version::new((1, 0)),
-        title: String::new(),
-        byte_order: ByteOrder::LittleEndian,
-        file_path: None,
-        data: DataSet::inline(UnstructuredGridPiece {
-            points: IOBuffer::F64(sheet.places.as_flattened().to_vec()),
-            cells: Cells {
-                cell_verts: VertexNumbers::XML {
-                    connectivity,
-                    offsets,
-                },
-                types,
-            },
-            data: Attributes { point, cell },
-        }),
+    out += "</CellData>\n<Points>\n";
+    array(&mut out, "Points", 3, sheet.places.as_flattened());
+    out += "</Points>\n<Cells>\n";
+    array(&mut out, "connectivity", 1, &connectivity);
+    array(&mut out, "offsets", 1, &offsets);
+    array(&mut out, "types", 1, &types);
+    out += "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+    out.into_bytes()
+}
+
+/// The metadata that we wrote.
+fn metadata(file: &File<'_>) -> Parsed<Value> {
+    let Some(bytes) = file.field("UnstructuredGrid", "metadata")? else {
+        return Ok(Value::Null);
     };
-    let mut bytes = b"<?xml version=\"1.0\"?>\n".to_vec();
-    grid.write_xml(&mut bytes)
-        .expect("a grid of inline arrays and memory that grows");
-    bytes.push(b'\n');
-    bytes
+    let bytes: Vec<u8> = bytes.into_f64().iter().map(|&b| b as u8).collect();
+    serde_json::from_slice(&bytes)
+        .map_err(|e| Flaw::new(format!("bad JSON ({e})"), "a JSON text").within("metadata"))
 }
 
-/// How the binary arrays of a file are encoded.
-struct Encoding {
-    big: bool,
-    wide: bool,
-    compressed: bool,
-}
-
-/// Reads the file.
+/// Reads the file: a single piece of lines and triangles.
 pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
-    let text = text(bytes)?;
-    if text.trim().is_empty() {
-        return Err(Flaw::new("an empty file", "an unstructured grid"));
-    }
-    if nesting(text) > DEEPEST {
-        return Err(Flaw::new(
-            format!("elements nested more than {DEEPEST} deep"),
-            "an unstructured grid",
-        ));
-    }
-    let document = Document::parse(text).map_err(|e| {
-        Flaw::line(
-            e.pos().row as usize,
-            format!("bad XML ({e})"),
-            "an unstructured grid, without raw appended data",
-        )
-    })?;
-    let root = document.root_element();
-    let encoding = Encoding {
-        big: root.attribute("byte_order") == Some("BigEndian"),
-        wide: root.attribute("header_type") == Some("UInt64"),
-        compressed: root.attribute("compressor").is_some_and(|c| !c.is_empty()),
-    };
-    let pieces: Vec<Node> = root
-        .children()
-        .filter(|n| n.has_tag_name("UnstructuredGrid"))
-        .flat_map(|grid| grid.children().filter(|n| n.has_tag_name("Piece")))
-        .collect();
-    let &[piece] = &pieces[..] else {
+    let source = Source::new(bytes)?;
+    let file = source.open()?;
+    let pieces = file.pieces("UnstructuredGrid")?;
+    let [piece] = &pieces[..] else {
         return Err(Flaw::new(
             format!("{} pieces of an unstructured grid", pieces.len()),
             "one",
         ));
     };
-    let read = |part: &str, name: Option<&str>| -> Parsed<Option<(usize, Numbers)>> {
-        let shown = name.unwrap_or(part);
-        piece
-            .children()
-            .filter(|n| n.has_tag_name(part))
-            .flat_map(|n| n.children())
-            .find(|n| {
-                n.has_tag_name("DataArray") && name.is_none_or(|m| n.attribute("Name") == Some(m))
-            })
-            .map(|node| data_array(node, &encoding).map_err(|f| f.within(shown)))
-            .transpose()
-    };
-    let integers = |part: &str, name: &str| -> Parsed<Option<Vec<i64>>> {
-        match read(part, Some(name))? {
-            None => Ok(None),
-            Some((_, Numbers::Integer(v))) => Ok(Some(v)),
-            Some(_) => Err(Flaw::new("floating point numbers", "integers").within(name)),
-        }
-    };
-    let needed = |name: &str| {
-        integers("Cells", name)?
-            .ok_or_else(|| Flaw::new("no such array", "one in Cells").within(name))
-    };
-    let (components, points) =
-        read("Points", None)?.ok_or_else(|| Flaw::new("no points", "a data array in Points"))?;
-    let points = points.into_f64();
-    if components != 3 || !points.len().is_multiple_of(3) {
-        return Err(Flaw::new(
-            format!("{} numbers, {components} a point", points.len()),
-            "3 a point",
-        )
-        .within("Points"));
-    }
-    let (dimension, coordinates) = match read("PointData", Some("coordinates"))? {
+    let points = piece.points()?.into_f64();
+    let (dimension, coordinates) = match piece.array("PointData", Some("coordinates"))? {
         Some((dimension, numbers)) => {
             let numbers = numbers.into_f64();
             if dimension == 0 || dimension.checked_mul(points.len() / 3) != Some(numbers.len()) {
@@ -183,10 +208,16 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
         }
         None => (3, points),
     };
+    let needed = |name: &str| {
+        piece
+            .integers("Cells", name)?
+            .ok_or_else(|| Flaw::new("no such array", "one in Cells").within(name))
+    };
     let mut parts = Parts {
+        metadata: metadata(&file)?,
         dimension,
         coordinates,
-        point_index: integers("PointData", "point_index")?,
+        point_index: piece.integers("PointData", "point_index")?,
         ..Parts::default()
     };
     let (connectivity, offsets, types) = (
@@ -195,8 +226,8 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
         needed("types")?,
     );
     let (cells, labels) = (
-        integers("CellData", "cells")?,
-        integers("CellData", "piece")?,
+        piece.integers("CellData", "cells")?,
+        piece.integers("CellData", "piece")?,
     );
     for (name, found) in [
         ("types", Some(types.len())),
@@ -249,151 +280,4 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
     parts.curves = (cells.is_some() || !curves.is_empty()).then_some(curves);
     parts.pieces = labels.is_some().then_some(pieces);
     Ok(parts)
-}
-
-/// How deep the elements of a text are nested, up to its first mistake in XML.
-fn nesting(text: &str) -> usize {
-    let (mut depth, mut deepest) = (0_usize, 0);
-    let mut rest = text;
-    while let Some(at) = rest.find('<') {
-        rest = &rest[at..];
-        let end = match rest {
-            r if r.starts_with("<!--") => r[4..].find("-->").map(|i| i + 7),
-            r if r.starts_with("<![CDATA[") => r.find("]]>").map(|i| i + 3),
-            r if r.starts_with("<?") => r.find("?>").map(|i| i + 2),
-            r if r.starts_with("</") => {
-                depth = depth.saturating_sub(1);
-                Some(2)
-            }
-            r => {
-                let mut quote = None;
-                let end = r.bytes().position(|byte| match (quote, byte) {
-                    (None, b'>') => true,
-                    (None, b'"' | b'\'') => {
-                        quote = Some(byte);
-                        false
-                    }
-                    (Some(open), _) if open == byte => {
-                        quote = None;
-                        false
-                    }
-                    _ => false,
-                });
-                depth += 1;
-                deepest = deepest.max(depth);
-                if end.is_some_and(|end| r[..end].ends_with('/')) {
-                    depth -= 1;
-                }
-                end
-            }
-        };
-        match end {
-            Some(end) => rest = &rest[end..],
-            None => break,
-        }
-    }
-    deepest
-}
-
-/// Number of components, and the numbers.
-fn data_array(node: Node<'_, '_>, encoding: &Encoding) -> Parsed<(usize, Numbers)> {
-    let components = match node.attribute("NumberOfComponents") {
-        Some(n) => n
-            .parse()
-            .map_err(|_| Flaw::new(excerpt(n), "a number of components"))?,
-        None => 1,
-    };
-    let kind = match node.attribute("type") {
-        Some("Float64") => "f8",
-        Some("Float32") => "f4",
-        Some("Int64") => "i8",
-        Some("Int32") => "i4",
-        Some("Int16") => "i2",
-        Some("Int8") => "i1",
-        Some("UInt64") => "u8",
-        Some("UInt32") => "u4",
-        Some("UInt16") => "u2",
-        Some("UInt8") => "u1",
-        other => {
-            return Err(Flaw::new(
-                format!("type {}", excerpt(other.unwrap_or(""))),
-                "a type of number",
-            ));
-        }
-    };
-    let content = node.text().unwrap_or("");
-    let numbers = match node.attribute("format") {
-        Some("ascii") if kind.starts_with('f') => Numbers::F64(ascii(content)?),
-        Some("ascii") => Numbers::Integer(ascii(content)?),
-        Some("binary") if !encoding.compressed => binary(content, kind, encoding)?,
-        Some("binary") => {
-            return Err(Flaw::new(
-                "compressed data",
-                "data without compression: save it again without",
-            ));
-        }
-        other => {
-            return Err(Flaw::new(
-                format!("format {}", excerpt(other.unwrap_or(""))),
-                "ascii or binary: save it again with one of these data modes",
-            ));
-        }
-    };
-    Ok((components, numbers))
-}
-
-fn ascii<T: std::str::FromStr>(content: &str) -> Parsed<Vec<T>> {
-    content
-        .split_ascii_whitespace()
-        .map(|field| {
-            field
-                .parse()
-                .map_err(|_| Flaw::new(excerpt(field), "a number"))
-        })
-        .collect()
-}
-
-/// Base64 of the number of bytes, then the bytes.
-fn binary(content: &str, kind: &str, encoding: &Encoding) -> Parsed<Numbers> {
-    let packed: String = content.split_ascii_whitespace().collect();
-    let bytes = base64::engine::general_purpose::STANDARD
-        .decode(packed)
-        .map_err(|e| Flaw::new(format!("bad base64 ({e})"), "binary data"))?;
-    let width = if encoding.wide { 8 } else { 4 };
-    let Some((size, data)) = bytes.split_at_checked(width) else {
-        return Err(Flaw::new(
-            format!("{} bytes", bytes.len()),
-            format!("{width} bytes that say how many follow"),
-        ));
-    };
-    let size = size.iter().enumerate().fold(0_u64, |size, (k, &byte)| {
-        let place = if encoding.big { width - 1 - k } else { k };
-        size | u64::from(byte) << (8 * place)
-    });
-    let one = u64::from(kind.as_bytes()[1] - b'0');
-    if size != data.len() as u64 || !size.is_multiple_of(one) {
-        return Err(Flaw::new(
-            format!("{} bytes of data", data.len()),
-            format!("{size}, as its header promises, a multiple of {one}"),
-        ));
-    }
-    npy::decode(kind, encoding.big, data)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nesting_is_counted_as_the_parser_sees_it() {
-        for (text, deepest) in [
-            ("<?xml version=\"1.0\"?><a><b/><b x='/>'/><c></c></a>", 2),
-            ("<a><!-- </a><b><c> --><d e=\">\"><f/></d></a>", 3),
-            ("<a><![CDATA[</a></a>]]><b><c/></b></a>", 3),
-            ("<a><a><a", 3),
-            ("", 0),
-        ] {
-            assert_eq!(nesting(text), deepest, "{text}");
-        }
-    }
 }

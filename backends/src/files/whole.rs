@@ -1,7 +1,9 @@
 //! Files are read in one go and written whole or not at all.
 
 use super::FileError;
-use std::io::{self, Write};
+use super::error::{Flaw, Parsed};
+use flate2::read::MultiGzDecoder;
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 /// Writes a file whole or not at all.
@@ -67,7 +69,7 @@ pub fn write_bytes_whole(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), Fil
     })
 }
 
-/// Reads a regular file.
+/// Reads a regular file; what gzip packed (`.gz`) is unpacked.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     let metadata = std::fs::metadata(path).map_err(|source| match source.kind() {
         io::ErrorKind::NotFound => FileError::Missing { path: path.into() },
@@ -86,10 +88,34 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
             },
         });
     }
-    std::fs::read(path).map_err(|source| FileError::Read {
+    let bytes = std::fs::read(path).map_err(|source| FileError::Read {
         path: path.into(),
         source,
-    })
+    })?;
+    if extension(path) == PACKED {
+        return unpack(&bytes).map_err(|flaw| flaw.of(path));
+    }
+    Ok(bytes)
+}
+
+/// The extension of what gzip packed.
+const PACKED: &str = "gz";
+
+/// Unpacks what gzip packed; memory is taken for bytes that come out, never for a promise.
+pub(crate) fn unpack(bytes: &[u8]) -> Parsed<Vec<u8>> {
+    let mut unpacked = Vec::new();
+    MultiGzDecoder::new(bytes)
+        .read_to_end(&mut unpacked)
+        .map_err(|e| Flaw::new(format!("bad gzip data ({e})"), "a complete .gz file"))?;
+    Ok(unpacked)
+}
+
+/// The extension in lower case, before `.gz` if that is the last one; empty for none.
+pub(crate) fn packed_extension(path: &Path) -> String {
+    match extension(path).as_str() {
+        PACKED => extension(Path::new(path.file_stem().unwrap_or_default())),
+        plain => plain.into(),
+    }
 }
 
 /// The extension in lower case, empty for none.
@@ -120,6 +146,23 @@ mod tests {
         assert!(matches!(error, FileError::Folder { .. }), "{error}");
         let error = write_bytes_whole(folder.path(), b"").unwrap_err();
         assert!(matches!(error, FileError::NotAFile { .. }), "{error}");
+    }
+
+    #[test]
+    fn unpacks_gzip_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.CSV.gz");
+        let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        packer.write_all(b"1,2\n").unwrap();
+        let packed = packer.finish().unwrap();
+        std::fs::write(&path, &packed).unwrap();
+        assert_eq!(packed_extension(&path), "csv");
+        assert_eq!(read_bytes(&path).unwrap(), b"1,2\n");
+        std::fs::write(&path, &packed[..packed.len() - 9]).unwrap();
+        let error = read_bytes(&path).unwrap_err().to_string();
+        assert!(error.contains("bad gzip data"), "{error}");
+        assert_eq!(packed_extension(Path::new("a.csv")), "csv");
+        assert_eq!(packed_extension(Path::new("gz")), "");
     }
 
     #[test]

@@ -1,0 +1,391 @@
+//! Point clouds of the Point Cloud Library, `.pcd`: text, binary, and binary packed by LZF. Read
+//! only.
+
+use super::columns::{ColumnChoice, pick};
+use super::error::{Flaw, Parsed, excerpt};
+use super::npy::{self, Array, Numbers};
+use super::table::{number, text};
+
+/// Longest header that is believed.
+const LONGEST_HEADER: usize = 1 << 14;
+
+/// LZF takes at least three bytes for this many.
+const LARGEST_RUN: usize = 264;
+
+/// A field of a point.
+struct Field {
+    name: String,
+    /// Type as NumPy calls it.
+    kind: String,
+    width: usize,
+    count: usize,
+}
+
+struct Header {
+    fields: Vec<Field>,
+    points: usize,
+    data: String,
+    /// Lines of the header.
+    lines: usize,
+}
+
+/// Reads the points: x, y, z, or the fields that are wanted.
+pub(crate) fn parse(bytes: &[u8], wanted: &ColumnChoice) -> Parsed<Array> {
+    let (header, data) = header(bytes)?;
+    let mut names = Vec::new();
+    for field in &header.fields {
+        for k in 0..field.count {
+            names.push(match field.count {
+                1 => field.name.clone(),
+                _ => format!("{}[{k}]", field.name),
+            });
+        }
+    }
+    let xyz = ["x", "y", "z"].map(str::to_string);
+    if *wanted == ColumnChoice::Automatic && !xyz.iter().all(|n| names.contains(n)) {
+        return Err(Flaw::new(
+            format!("the fields {}", names.join(", ")),
+            "x, y, z; --columns takes others",
+        ));
+    }
+    let kept = pick(Some(&names), names.len(), wanted)?.kept;
+    let numbers = match header.data.as_str() {
+        "ascii" => ascii(data, &header, names.len(), &kept)?,
+        "binary" => binary(data, &header, &kept, false)?,
+        "binary_compressed" => {
+            let word = |at: usize| {
+                data.get(at..at + 4)?
+                    .first_chunk()
+                    .map(|&b| u32::from_le_bytes(b) as usize)
+            };
+            let (Some(packed), Some(size)) = (word(0), word(4)) else {
+                return Err(Flaw::new("the end of the file", "the sizes of packed data"));
+            };
+            let rest = &data[8..];
+            let stream = rest.get(..packed).ok_or_else(|| {
+                Flaw::new(
+                    format!("{} bytes of packed data", rest.len()),
+                    format!("{packed}, as their header promises"),
+                )
+            })?;
+            binary(&unpack(stream, size)?, &header, &kept, true)?
+        }
+        other => {
+            return Err(Flaw::new(
+                format!("data {}", excerpt(other)),
+                "ascii, binary or binary_compressed",
+            ));
+        }
+    };
+    Ok(Array::new(vec![header.points, kept.len()], numbers))
+}
+
+fn header(bytes: &[u8]) -> Parsed<(Header, &[u8])> {
+    let window = &bytes[..bytes.len().min(LONGEST_HEADER)];
+    let mut fields: Vec<&str> = Vec::new();
+    let (mut sizes, mut types, mut counts) = (Vec::new(), Vec::new(), None);
+    let (mut width, mut height, mut points) = (None, None, None);
+    let mut rest = window;
+    let mut line = 0;
+    while let Some(end) = rest.iter().position(|&b| b == b'\n') {
+        let row = text(&rest[..end])?.trim();
+        rest = &rest[end + 1..];
+        line += 1;
+        let words: Vec<&str> = row.split_whitespace().collect();
+        let sizes_of = |words: &[&str]| -> Parsed<Vec<usize>> {
+            let size = |w: &&str| {
+                w.parse()
+                    .map_err(|_| Flaw::line(line, excerpt(w), "a number that there can be"))
+            };
+            words.iter().map(size).collect()
+        };
+        match words[..] {
+            [] | ["VERSION" | "VIEWPOINT", ..] => {}
+            [w, ..] if w.starts_with('#') => {}
+            ["FIELDS" | "COLUMNS", ref all @ ..] => fields = all.to_vec(),
+            ["SIZE", ref all @ ..] => sizes = sizes_of(all)?,
+            ["TYPE", ref all @ ..] => types = all.to_vec(),
+            ["COUNT", ref all @ ..] => counts = Some(sizes_of(all)?),
+            ["WIDTH", w] => width = Some(sizes_of(&[w])?[0]),
+            ["HEIGHT", h] => height = Some(sizes_of(&[h])?[0]),
+            ["POINTS", n] => points = Some(sizes_of(&[n])?[0]),
+            ["DATA", data] => {
+                let counts = counts.unwrap_or_else(|| vec![1; fields.len()]);
+                if [sizes.len(), types.len(), counts.len()] != [fields.len(); 3] {
+                    return Err(Flaw::line(
+                        line,
+                        format!(
+                            "{} fields, {} sizes, {} types",
+                            fields.len(),
+                            sizes.len(),
+                            types.len()
+                        ),
+                        "as many of each",
+                    ));
+                }
+                let area = width.zip(height).and_then(|(w, h)| w.checked_mul(h));
+                let points = points
+                    .or(area)
+                    .ok_or_else(|| Flaw::line(line, "no POINTS", "their number"))?;
+                let fields = fields.iter().zip(sizes).zip(types).zip(counts);
+                let field = |(((name, size), kind), count): (((&&str, usize), &str), usize)| {
+                    let letter = kind.to_lowercase();
+                    if !matches!(letter.as_str(), "f" | "i" | "u")
+                        || !matches!(size, 1 | 2 | 4 | 8)
+                        || count > 4096
+                    {
+                        return Err(Flaw::new(
+                            format!("{count} of type {kind} and size {size}"),
+                            "types F, I, U of 1, 2, 4 or 8 bytes",
+                        )
+                        .within(name));
+                    }
+                    Ok(Field {
+                        name: (*name).into(),
+                        kind: format!("{letter}{size}"),
+                        width: size,
+                        count,
+                    })
+                };
+                let header = Header {
+                    fields: fields.map(field).collect::<Parsed<_>>()?,
+                    points,
+                    data: data.into(),
+                    lines: line,
+                };
+                return Ok((header, &bytes[window.len() - rest.len()..]));
+            }
+            _ => {
+                return Err(Flaw::line(
+                    line,
+                    excerpt(row),
+                    "a header of the Point Cloud Library",
+                ));
+            }
+        }
+    }
+    Err(Flaw::new(
+        "no line DATA",
+        "a header of the Point Cloud Library",
+    ))
+}
+
+/// NaN is how such files mark a point that was not measured.
+fn not_measured(flaw: Flaw) -> Flaw {
+    if flaw.found == "NaN" {
+        let expected = "a finite number: leave out the points that were not measured".into();
+        return Flaw { expected, ..flaw };
+    }
+    flaw
+}
+
+fn ascii(data: &[u8], header: &Header, total: usize, kept: &[usize]) -> Parsed<Numbers> {
+    let mut numbers = Vec::new();
+    let mut points = 0;
+    for (at, row) in text(data)?.lines().enumerate() {
+        let fields: Vec<&str> = row.split_whitespace().collect();
+        if fields.is_empty() {
+            continue;
+        }
+        let line = header.lines + at + 1;
+        if fields.len() != total {
+            let found = format!("{} numbers", fields.len());
+            return Err(Flaw::line(line, found, format!("{total}, one a field")));
+        }
+        points += 1;
+        for &k in kept {
+            numbers.push(number(fields[k], line, k + 1).map_err(not_measured)?);
+        }
+    }
+    if points != header.points {
+        return Err(Flaw::new(
+            format!("{points} points"),
+            format!("{}, as the header promises", header.points),
+        ));
+    }
+    Ok(Numbers::F64(numbers))
+}
+
+/// Points one after the other; or, when packed, field after field.
+fn binary(data: &[u8], header: &Header, kept: &[usize], by_field: bool) -> Parsed<Numbers> {
+    let entry: usize = header.fields.iter().map(|f| f.width * f.count).sum();
+    let needed = header.points.checked_mul(entry);
+    let data = needed.and_then(|n| data.get(..n)).ok_or_else(|| {
+        Flaw::new(
+            format!("{} bytes of data", data.len()),
+            format!(
+                "{} points of {entry} bytes, as the header promises",
+                header.points
+            ),
+        )
+    })?;
+    let mut columns: Vec<Numbers> = Vec::new();
+    let mut from = 0;
+    for field in &header.fields {
+        let size = field.width * field.count;
+        for k in 0..field.count {
+            let at = |point: usize| match by_field {
+                true => header.points * from + point * size + k * field.width,
+                false => point * entry + from + k * field.width,
+            };
+            if !kept.contains(&columns.len()) {
+                columns.push(Numbers::Integer(vec![]));
+                continue;
+            }
+            let bytes: Vec<u8> = (0..header.points)
+                .flat_map(|p| &data[at(p)..at(p) + field.width])
+                .copied()
+                .collect();
+            let numbers = npy::decode(&field.kind, false, &bytes);
+            columns.push(numbers.map_err(|f| f.within(&field.name))?);
+        }
+        from += size;
+    }
+    let all = (0..header.points).flat_map(|p| kept.iter().map(move |&k| (p, k)));
+    let all = all.map(|(p, k)| columns[k].at(p));
+    Ok(
+        if kept.iter().all(|&k| matches!(columns[k], Numbers::F32(_))) {
+            // Exact: every one of them was widened from single precision.
+            Numbers::F32(all.map(|x| x as f32).collect())
+        } else {
+            Numbers::F64(all.collect())
+        },
+    )
+}
+
+/// Unpacks LZF: a byte below 32 announces so many bytes and one more as they are; else its upper
+/// three bits are a length, its lower five the upper part of a distance backward.
+fn unpack(packed: &[u8], size: usize) -> Parsed<Vec<u8>> {
+    let bad = || Flaw::new("bad packed data", "data packed by LZF");
+    if size > packed.len().saturating_mul(LARGEST_RUN) {
+        return Err(Flaw::new(
+            format!("a promise of {size} bytes in {} packed ones", packed.len()),
+            format!("at most {LARGEST_RUN} times as many"),
+        ));
+    }
+    let mut out: Vec<u8> = Vec::new();
+    let mut bytes = packed.iter().map(|&b| usize::from(b));
+    while let Some(control) = bytes.next() {
+        if control < 32 {
+            for _ in 0..=control {
+                out.push(bytes.next().ok_or_else(bad)? as u8);
+            }
+            continue;
+        }
+        let mut length = control >> 5;
+        if length == 7 {
+            length += bytes.next().ok_or_else(bad)?;
+        }
+        let distance = ((control & 31) << 8 | bytes.next().ok_or_else(bad)?) + 1;
+        let start = out.len().checked_sub(distance).ok_or_else(bad)?;
+        for k in 0..length + 2 {
+            out.push(out[start + k]);
+        }
+        if out.len() > size {
+            break;
+        }
+    }
+    if out.len() != size {
+        return Err(Flaw::new(
+            format!("{} unpacked bytes", out.len()),
+            format!("{size}, as their header promises"),
+        ));
+    }
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(data: &str, rest: &[u8]) -> Vec<u8> {
+        let head = format!(
+            "# .PCD v0.7\nVERSION 0.7\nFIELDS x rgb y z\nSIZE 4 4 4 4\nTYPE F U F F\nCOUNT 1 1 1 1\nWIDTH 2\n\
+             HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA {data}\n"
+        );
+        [head.as_bytes(), rest].concat()
+    }
+
+    #[test]
+    fn text_binary_and_packed_are_the_same_points() {
+        let places = [1.0_f32, 2.0, 3.0, -4.0, 5.5, 6.0];
+        let put = |x: f32| x.to_le_bytes();
+        let color = 0x00ff_00ff_u32.to_le_bytes();
+        let mut rows = Vec::new();
+        for p in places.chunks(3) {
+            rows.extend([put(p[0]), color, put(p[1]), put(p[2])].concat());
+        }
+        let fields: Vec<u8> = [
+            put(1.0),
+            put(-4.0),
+            color,
+            color,
+            put(2.0),
+            put(5.5),
+            put(3.0),
+            put(6.0),
+        ]
+        .concat();
+        // Bytes as they are, at most 32 of them together.
+        let mut packed = Vec::new();
+        for chunk in fields.chunks(32) {
+            packed.push(chunk.len() as u8 - 1);
+            packed.extend(chunk);
+        }
+        let mut compressed = (packed.len() as u32).to_le_bytes().to_vec();
+        compressed.extend((fields.len() as u32).to_le_bytes());
+        compressed.extend(packed);
+        let expected = places.map(f64::from);
+        for (data, rest) in [
+            ("ascii", &b"1 9 2 3\n-4 9 5.5 6\n"[..]),
+            ("binary", &rows),
+            ("binary_compressed", &compressed),
+        ] {
+            let array = parse(&file(data, rest), &ColumnChoice::Automatic).unwrap();
+            assert_eq!(array.shape, [2, 3]);
+            assert_eq!(array.numbers.into_f64(), expected, "{data}");
+        }
+        let chosen = parse(
+            &file("ascii", b"1 9 2 3\n4 8 5 6\n"),
+            &"rgb,x".parse().unwrap(),
+        );
+        assert_eq!(chosen.unwrap().numbers.into_f64(), [9.0, 1.0, 8.0, 4.0]);
+    }
+
+    #[test]
+    fn runs_that_overlap_are_unpacked() {
+        // One byte, then nine from one back: ten times the same.
+        assert_eq!(unpack(&[0, b'a', 7 << 5, 0, 0], 10).unwrap(), [b'a'; 10]);
+        assert!(unpack(&[32, 5], 3).is_err());
+        assert!(unpack(&[0, b'a'], 2).is_err());
+        assert!(unpack(&[0], usize::MAX).is_err());
+    }
+
+    #[test]
+    fn lies_and_gaps_are_told() {
+        let told = |bytes: &[u8]| parse(bytes, &ColumnChoice::Automatic).unwrap_err();
+        assert!(
+            told(&file("ascii", b"1 9 2 3\n"))
+                .found
+                .contains("1 points")
+        );
+        assert!(
+            told(&file("ascii", b"1 9 nan 3\n"))
+                .expected
+                .contains("not measured")
+        );
+        assert!(told(&file("binary", b"1234")).found.contains("4 bytes"));
+        assert!(told(&file("gzip", b"")).found.contains("gzip"));
+        assert!(
+            told(b"FIELDS a\nSIZE 4\nTYPE F\nPOINTS 1\nDATA ascii\n1\n")
+                .expected
+                .contains("--columns")
+        );
+        assert!(
+            told(b"FIELDS x\nDATA ascii\n")
+                .found
+                .contains("1 fields, 0 sizes")
+        );
+        assert!(told(b"").found.contains("no line DATA"));
+    }
+}
