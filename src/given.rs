@@ -61,7 +61,11 @@ impl Pipeline {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn reconstruct_distances(&mut self, distances: &Distances) -> Result<Outcome, Error> {
-        let threads = Threads::new(self.parameters().threads.unwrap_or(0))?;
+        self.guarded(|pipeline| pipeline.of_distances(distances))
+    }
+
+    fn of_distances(&mut self, distances: &Distances) -> Result<Outcome, Error> {
+        let threads = self.threads()?;
         match distances {
             Distances::Dense { count, values } => {
                 let metric = GivenDistances::new(*count, values.clone())?;

@@ -3,6 +3,11 @@
 //! This crate is the facade: the [`Pipeline`] puts the parts of the workspace together with good
 //! defaults, the [`prelude`] names what one needs every day, and the modules below lead to everything else.
 
+// The command line is written against the public names, as if it stood outside.
+extern crate self as crosscap;
+
+#[doc(hidden)]
+pub mod command;
 pub mod comparison;
 mod given;
 pub mod pipeline;

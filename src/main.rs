@@ -1,9 +1,7 @@
 //! The command line `crosscap`.
 
-mod command;
-
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    command::run()
+    ExitCode::from(crosscap::command::run(std::env::args_os()))
 }

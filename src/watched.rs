@@ -1,5 +1,6 @@
 //! A chart that remembers how much it lost.
 
+use crosscap_backends::interrupt::Interrupt;
 use crosscap_core::{Chart, Error, LocalChart};
 use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
@@ -16,14 +17,16 @@ pub struct Distortion {
 /// A chart that remembers how much it lost.
 pub(crate) struct Watched<'a> {
     chart: &'a dyn LocalChart,
+    interrupt: Interrupt,
     /// Number of charts, sum and largest of their distortions.
     seen: Mutex<(usize, f64, f64)>,
 }
 
 impl<'a> Watched<'a> {
-    pub(crate) fn new(chart: &'a dyn LocalChart) -> Self {
+    pub(crate) fn new(chart: &'a dyn LocalChart, interrupt: &Interrupt) -> Self {
         Self {
             chart,
+            interrupt: interrupt.clone(),
             seen: Mutex::new((0, 0.0, 0.0)),
         }
     }
@@ -39,6 +42,8 @@ impl<'a> Watched<'a> {
 
 impl LocalChart for Watched<'_> {
     fn chart(&self, count: usize, distances: &[f64], dimension: usize) -> Result<Chart, Error> {
+        // The triangulation runs in one thread, chart by chart.
+        self.interrupt.heed();
         let chart = self.chart.chart(count, distances, dimension)?;
         // A star is made after the other, so the order of the sum is always the same.
         if let Ok(mut seen) = self.seen.lock() {

@@ -3,6 +3,7 @@
 pub mod euclidean;
 pub mod files;
 pub mod geodesic;
+pub mod interrupt;
 pub mod linear_program;
 pub mod parallel;
 pub mod picture;

@@ -1,5 +1,6 @@
 //! Many threads, on rayon.
 
+use crate::interrupt::Interrupt;
 use crosscap_algorithms::execute::Execute;
 use crosscap_core::Error;
 use rayon::ThreadPool;
@@ -8,7 +9,10 @@ use std::ops::Range;
 
 /// A pool of threads of its own. Results do not depend on their number.
 #[derive(Debug)]
-pub struct Threads(ThreadPool);
+pub struct Threads {
+    pool: ThreadPool,
+    interrupt: Interrupt,
+}
 
 impl Threads {
     /// `count` threads; 0 for one a processor.
@@ -16,10 +20,21 @@ impl Threads {
     /// # Errors
     /// [`Error::Parameter`] when the system gives no threads.
     pub fn new(count: usize) -> Result<Self, Error> {
+        Self::heeding(count, &Interrupt::default())
+    }
+
+    /// The same for a run that can be stopped: every job asks first, and [`Interrupt::guard`] has to be around them.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] when the system gives no threads.
+    pub fn heeding(count: usize, interrupt: &Interrupt) -> Result<Self, Error> {
         rayon::ThreadPoolBuilder::new()
             .num_threads(count)
             .build()
-            .map(Self)
+            .map(|pool| Self {
+                pool,
+                interrupt: interrupt.clone(),
+            })
             .map_err(|error| Error::Parameter {
                 name: "threads",
                 value: count.to_string(),
@@ -29,18 +44,22 @@ impl Threads {
 
     /// Runs `work` with these threads: what it runs in parallel, it runs on them.
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        self.0.install(work)
+        self.pool.install(work)
     }
 
     /// Number of threads.
     pub fn count(&self) -> usize {
-        self.0.current_num_threads()
+        self.pool.current_num_threads()
     }
 }
 
 impl Execute for Threads {
     fn ranges(&self, count: usize, job: &(dyn Fn(Range<usize>) + Sync)) {
-        self.0
-            .install(|| (0..count).into_par_iter().for_each(|i| job(i..i + 1)));
+        let heeded = |i: usize| {
+            self.interrupt.heed();
+            job(i..i + 1);
+        };
+        self.pool
+            .install(|| (0..count).into_par_iter().for_each(heeded));
     }
 }

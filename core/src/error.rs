@@ -100,6 +100,9 @@ pub enum Error {
         /// What was returned.
         detail: String,
     },
+    /// The run was stopped from outside before it had a result.
+    #[error("stopped before there was a result")]
+    Interrupted,
 }
 
 impl Error {

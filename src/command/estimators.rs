@@ -35,6 +35,23 @@ impl EstimatorName {
         }
     }
 
+    /// The one of this name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where there is none, with the names that there are.
+    pub fn named(name: &str) -> Result<Self, Error> {
+        let all = Self::value_variants();
+        let known = all.iter().find(|kind| kind.name() == name).copied();
+        known.ok_or_else(|| {
+            let names: Vec<&str> = all.iter().map(|kind| kind.name()).collect();
+            Error::Parameter {
+                name: "estimator",
+                value: name.into(),
+                expected: format!("one of {}", names.join(", ")),
+            }
+        })
+    }
+
     /// The estimator of neighborhoods.
     pub fn local(self, dt: f64) -> Result<Box<dyn DimensionEstimator<Scalar = f64>>, Error> {
         Ok(match self {

@@ -1,24 +1,27 @@
-//! Commands, one a file, and what they share.
+//! The command line: commands, one a file, and what they share.
+//!
+//! A part of the library, so that what else is built on it brings the same command line: the Python package
+//! does. Its items are no public interface.
 
 mod check;
 mod compare;
 mod compare_plot;
 mod completions;
-mod convert;
+pub mod convert;
 mod cost;
 mod demo;
 mod dimension;
-mod estimators;
+pub mod estimators;
 mod failure;
-mod findings;
-mod layout;
+pub mod findings;
+pub mod layout;
 mod number;
 mod output;
 mod paper;
 mod parameters;
-mod picture;
+pub mod picture;
 mod points;
-mod reconstruct;
+pub mod reconstruct;
 mod sample;
 mod spaces;
 mod terminal;
@@ -28,7 +31,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use cost::Cost;
 use failure::Failure;
-use std::process::ExitCode;
+use std::ffi::OsString;
 
 const EXIT_CODES: &str = "Exit codes:
   0  done; for a reconstruction or a check: the mesh is verified
@@ -73,16 +76,16 @@ enum Command {
     Completions(completions::Completions),
 }
 
-/// Runs the command line of this process.
-pub fn run() -> ExitCode {
-    let cli = match Cli::try_parse() {
+/// Runs a command line, the name of the program first, and returns the exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(message) => {
             // A reader that has gone away (a closed pipe) is no reason to complain.
             let _ = message.print();
             return match message.kind() {
-                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => ExitCode::SUCCESS,
-                _ => ExitCode::from(Failure::USAGE),
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => 0,
+                _ => Failure::USAGE,
             };
         }
     };
@@ -100,10 +103,10 @@ pub fn run() -> ExitCode {
         Command::Completions(command) => command.run(Cli::command()),
     };
     let code = match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => {
             terminal::complain(&failure);
-            ExitCode::from(failure.code())
+            failure.code()
         }
     };
     if cost.is_worth_telling() {

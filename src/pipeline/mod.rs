@@ -20,6 +20,8 @@ use crosscap_algorithms::stratify::Tuning;
 use crosscap_algorithms::triangulate::{
     LargestAngle, MinimumCircumradius, Rules, Triangulation, Triangulator,
 };
+use crosscap_backends::interrupt::Interrupt;
+use crosscap_backends::parallel::Threads;
 use crosscap_core::{
     CompatibilityTest, DimensionEstimator, Error, LandmarkSelector, LocalChart, MetricSpace,
     NeighborhoodOracle, PointCloud, SingularityModel, StratifiedLandmarks, TriangleRule,
@@ -58,6 +60,7 @@ struct Parts {
     oracle: Option<Box<dyn NeighborhoodOracle<Scalar = f64>>>,
     analysis_metric: Option<Custom>,
     chart_metric: Option<Custom>,
+    interrupt: Interrupt,
 }
 
 impl Pipeline {
@@ -82,6 +85,7 @@ impl Pipeline {
             oracle: None,
             analysis_metric: None,
             chart_metric: None,
+            interrupt: Interrupt::default(),
             tuning: Tuning::MEASURED,
             parameters,
         };
@@ -168,6 +172,24 @@ impl Pipeline {
         self
     }
 
+    /// Lets `interrupt` stop a run: between jobs, between charts and between stages. The error is then
+    /// [`Error::Interrupted`], and the pipeline should be dropped.
+    ///
+    /// ```
+    /// use crosscap::backends::interrupt::Interrupt;
+    /// use crosscap::prelude::*;
+    /// let sample = SampleSurface::find("sphere")?.sample(&Sampling::new(4000, 7))?;
+    /// let interrupt = Interrupt::default();
+    /// interrupt.request(); // By another thread, after a while.
+    /// let mut pipeline = Pipeline::new(Parameters::new(0.4, 0.2))?.interrupt(interrupt);
+    /// assert!(matches!(pipeline.reconstruct(&sample.points), Err(Error::Interrupted)));
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn interrupt(mut self, interrupt: Interrupt) -> Self {
+        self.parts.interrupt = interrupt;
+        self
+    }
+
     /// Reconstructs the surface that `cloud` was sampled from.
     ///
     /// # Errors
@@ -191,12 +213,30 @@ impl Pipeline {
         self.parts.triangulator(chart).triangulate(waist)
     }
 
+    /// Does `work`, of which the run is a part, so that it can be stopped.
+    pub(crate) fn guarded<T>(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let interrupt = self.parts.interrupt.clone();
+        interrupt.guard(|| work(self))
+    }
+
+    /// The threads of a run; to be used inside [`Pipeline::guarded`].
+    pub(crate) fn threads(&self) -> Result<Threads, Error> {
+        self.parts.threads()
+    }
+
     pub(crate) fn warn(&mut self, warning: &Warning) {
         (self.warned)(warning);
     }
 }
 
 impl Parts {
+    fn threads(&self) -> Result<Threads, Error> {
+        Threads::heeding(self.parameters.threads.unwrap_or(0), &self.interrupt)
+    }
+
     /// The triangulator that lays stars out in a chart.
     fn triangulator<'a>(&'a self, chart: &'a dyn LocalChart) -> Triangulator<'a> {
         let literal = self.parameters.method == Method::Paper;

@@ -1,5 +1,6 @@
 //! Where a reconstruction is, and how long each stage took.
 
+use crosscap_backends::interrupt::Interrupt;
 use serde::Serialize;
 use std::fmt;
 use std::time::Instant;
@@ -41,21 +42,24 @@ pub(super) type StageObserver = Box<dyn FnMut(Stage)>;
 /// The stages gone through so far, with their seconds.
 pub(super) struct Progress<'o> {
     observer: &'o mut StageObserver,
+    interrupt: Interrupt,
     stages: Vec<(Stage, f64)>,
     running: Option<(Stage, Instant)>,
 }
 
 impl<'o> Progress<'o> {
-    pub(super) fn new(observer: &'o mut StageObserver) -> Self {
+    pub(super) fn new(observer: &'o mut StageObserver, interrupt: &Interrupt) -> Self {
         Self {
             observer,
+            interrupt: interrupt.clone(),
             stages: Vec::new(),
             running: None,
         }
     }
 
-    /// Begins a stage, which ends the one before.
+    /// Begins a stage, which ends the one before, unless the run is to stop.
     pub(super) fn enter(&mut self, stage: Stage) {
+        self.interrupt.heed();
         self.stop();
         self.running = Some((stage, Instant::now()));
         (self.observer)(stage);

@@ -51,14 +51,18 @@ struct Triangulated {
 
 impl Pipeline {
     pub(crate) fn run(&mut self, input: &Input<'_>) -> Result<Outcome, Error> {
+        self.guarded(|pipeline| pipeline.stages(input))
+    }
+
+    fn stages(&mut self, input: &Input<'_>) -> Result<Outcome, Error> {
         let Self {
             parts,
             observer,
             warned,
         } = self;
-        let mut progress = Progress::new(observer);
+        let mut progress = Progress::new(observer, &parts.interrupt);
         progress.enter(Stage::Index);
-        let threads = Threads::new(parts.parameters.threads.unwrap_or(0))?;
+        let threads = parts.threads()?;
         let ground = parts.ground(input, &threads)?;
         let warnings = ground.engines.warnings();
         warnings.iter().for_each(&mut *warned);
@@ -86,7 +90,7 @@ impl Pipeline {
         };
 
         progress.enter(Stage::Landmarks);
-        let watched = Watched::new(parts.chart.as_ref());
+        let watched = Watched::new(parts.chart.as_ref(), &parts.interrupt);
         let producer = parts.producer(&ground, &analyzer, &analysis, published.as_ref())?;
         let made = parts.triangulate(&ground, producer.as_ref(), &watched, &mut progress)?;
 

@@ -18,12 +18,16 @@ use crosscap_core::{MetricSpace, Neighbor, NeighborhoodOracle, Scalar};
 #[derive(Clone, Debug)]
 pub struct BruteForceOracle<M> {
     metric: M,
+    points: Vec<usize>,
 }
 
 impl<M: MetricSpace> BruteForceOracle<M> {
     /// Serves a metric space, given by value or by reference.
     pub fn new(metric: M) -> Self {
-        Self { metric }
+        Self {
+            points: (0..metric.len()).collect(),
+            metric,
+        }
     }
 
     /// The metric that it serves.
@@ -31,14 +35,13 @@ impl<M: MetricSpace> BruteForceOracle<M> {
         &self.metric
     }
 
-    fn all(
-        &self,
-        center: usize,
-    ) -> impl Iterator<Item = Neighbor<<Self as NeighborhoodOracle>::Scalar>> {
-        (0..self.metric.len()).map(move |index| Neighbor {
-            index,
-            distance: self.metric.distance(center, index),
-        })
+    fn all(&self, center: usize) -> impl Iterator<Item = Neighbor<M::Scalar>> + use<M> {
+        // All at once, for metrics that know better than one after the other.
+        let mut distances = Vec::with_capacity(self.points.len());
+        self.metric
+            .distances_to(center, &self.points, &mut distances);
+        let numbered = distances.into_iter().enumerate();
+        numbered.map(|(index, distance)| Neighbor { index, distance })
     }
 }
 

@@ -65,15 +65,30 @@ impl Distances {
 /// ```
 pub fn read_distances(path: impl AsRef<Path>) -> Result<Distances, FileError> {
     let path = path.as_ref();
+    known(path)?;
+    distances_of_bytes(path, &read_bytes(path)?)
+}
+
+/// The same from the bytes of such a file, which need not exist: `path` tells the format, and is
+/// what a refusal calls it.
+///
+/// # Errors
+/// Those of [`read_distances`] but for reading.
+pub fn distances_of_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<Distances, FileError> {
+    let path = path.as_ref();
+    parse(&known(path)?, bytes).map_err(|flaw| flaw.of(path))
+}
+
+fn known(path: &Path) -> Result<String, FileError> {
     let extension = packed_extension(path);
-    if !matches!(extension.as_str(), "npy" | "npz") {
-        return Err(FileError::Extension {
-            path: path.into(),
-            extension,
-            known: EXTENSIONS,
-        });
+    if matches!(extension.as_str(), "npy" | "npz") {
+        return Ok(extension);
     }
-    parse(&extension, &read_bytes(path)?).map_err(|flaw| flaw.of(path))
+    Err(FileError::Extension {
+        path: path.into(),
+        extension,
+        known: EXTENSIONS,
+    })
 }
 
 /// Reads the bytes of a distance file with a known extension.

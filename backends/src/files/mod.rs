@@ -49,7 +49,7 @@ mod tests;
 
 pub use any_cloud::AnyCloud;
 pub use columns::{ColumnChoice, ColumnName};
-pub use distances::{Distances, read_distances};
+pub use distances::{Distances, distances_of_bytes, read_distances};
 pub use error::{FileError, Place};
 pub use indices::{read_indices, write_indices};
 pub use mesh::{
