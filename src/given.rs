@@ -190,7 +190,7 @@ fn paths(
 }
 
 /// The known distances as a graph: what is not known is not near.
-struct KnownDistances<'a>(&'a SparseDistances<f64>);
+pub(crate) struct KnownDistances<'a>(pub(crate) &'a SparseDistances<f64>);
 
 impl KnownDistances<'_> {
     fn reach(&self, point: usize) -> f64 {

@@ -6,25 +6,31 @@
 // The command line is written against the public names, as if it stood outside.
 extern crate self as crosscap;
 
+pub mod auto;
 #[doc(hidden)]
 pub mod command;
 pub mod comparison;
 mod given;
 pub mod pipeline;
+pub mod refusal;
 mod spaces;
 mod watched;
 
+pub use auto::{Auto, Pinned, Search};
 pub use crosscap_algorithms as algorithms;
 pub use crosscap_backends as backends;
 pub use crosscap_core as core;
 pub use given::GivenSpace;
 pub use pipeline::{Method, Outcome, Parameters, Pipeline, Report, Stage};
+pub use refusal::{Advice, Refusal};
 pub use spaces::{MetricName, Neighborhoods, Spaces, Warning};
 pub use watched::Distortion;
 
 /// What a reconstruction needs, in one line.
 pub mod prelude {
+    pub use crate::auto::{Auto, Pinned, Search};
     pub use crate::pipeline::{Method, Outcome, Parameters, Pipeline, Report, Stage};
+    pub use crate::refusal::{Advice, Refusal};
     pub use crosscap_algorithms::certificate::Verdict;
     pub use crosscap_algorithms::surfaces::{SampleSurface, Sampling};
     pub use crosscap_core::{

@@ -239,8 +239,6 @@ fn usage_errors_name_what_is_wrong() {
         ("", "Usage:"),
         ("fly", "unrecognized subcommand"),
         ("reconstruct p.npy --eps 1 --dl 0.5", "--output"),
-        (reconstruct, "--eps"),
-        (&format!("{reconstruct} --eps 0.5"), "--dl"),
         (
             &format!("{reconstruct} --eps 0 --dl 0.2"),
             "expected a number above 0",
@@ -1092,6 +1090,42 @@ fn a_sphere_is_reconstructed() {
 }
 
 #[test]
+fn nothing_but_the_points_is_needed_and_the_printed_command_repeats_the_run() {
+    let room = Room::new();
+    sphere_points(&room);
+    let ran = room
+        .run("reconstruct points.npy -o chosen.npz")
+        .expect(0)
+        .says("Betti numbers 1, 0, 1 over Q")
+        .says("99 of 100 points have 60 others nearer than that")
+        .says("half of eps");
+    let again = ran
+        .out
+        .lines()
+        .find_map(|line| line.strip_prefix("the same again: crosscap "));
+    let again = again.unwrap().replace("chosen.npz", "again.npz");
+    let ran = room.run(&again).expect(0);
+    assert!(!ran.out.contains("chosen:"), "{}", ran.out);
+    let read = |name: &str| std::fs::read(room.path(name)).unwrap();
+    assert_eq!(read("chosen.npz"), read("again.npz"));
+}
+
+#[test]
+fn what_is_pinned_stays_and_the_rest_is_chosen() {
+    let room = Room::new();
+    sphere_points(&room);
+    room.run("reconstruct points.npy -o mesh.npz --dl 0.31 --seed 4 --report report.json")
+        .expect(0)
+        .says("eps 0.62 (twice dl), dl 0.31 (given)");
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(room.path("report.json")).unwrap()).unwrap();
+    assert_eq!(report["parameters"]["dl"], 0.31);
+    assert_eq!(report["parameters"]["seed"], 4);
+    assert_eq!(report["attempts"][0]["parameters"]["eps"], 0.62);
+    assert_eq!(report["density"]["points"], 3000);
+}
+
+#[test]
 fn the_same_input_gives_the_same_mesh_on_any_number_of_threads() {
     let room = Room::new();
     sphere_points(&room);
@@ -1139,25 +1173,53 @@ fn duplicates_do_no_harm() {
 }
 
 #[test]
-fn no_surface_no_file() {
+fn no_surface_no_mesh() {
     let room = Room::new();
     write_points(room.path("ball.npy"), &ball(3000)).unwrap();
     let command = "reconstruct ball.npy -o mesh.npz --eps 0.4 --dl 0.2";
-    let more = "--report report.json --picture page.html";
-    for kind in ["", "--surface"] {
-        let ran = room.run(&format!("{command} {kind} {more}")).expect(1);
-        assert!(!ran.err.is_empty());
-        assert_eq!(room.files(), ["ball.npy"], "{kind}");
-    }
+    let more = "--report report.json --picture page.html --cut-out worst.xyz";
+    room.run(&format!("{command} {more}"))
+        .expect(1)
+        .complains("the points fill a space of more than two dimensions")
+        .complains("leave out the points there, or the columns that are no coordinates");
+    // There was no mesh to draw.
+    assert_eq!(room.files(), ["ball.npy", "report.json", "worst.xyz"]);
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(room.path("report.json")).unwrap()).unwrap();
+    assert_eq!(report["verified"], false);
+    assert_eq!(report["refusal"]["faults"][0]["kind"], "dimension");
+    let cut = room.points("worst.xyz");
+    assert!(cut.len() <= 1500, "{}", cut.len());
+    let ran = room.run(&format!("{command} --surface {more}")).expect(1);
+    assert!(!ran.err.is_empty());
+    assert_eq!(
+        room.files(),
+        ["ball.npy", "page.html", "report.json", "worst.xyz"]
+    );
     room.run(&format!("{command} --surface {more} --keep-unverified"))
         .expect(1)
         .says("not verified")
         .complains("this mesh is not verified");
-    assert_eq!(
-        room.files(),
-        ["ball.npy", "mesh.npz", "page.html", "report.json"]
-    );
+    assert!(room.files().contains(&"mesh.npz".to_string()));
     room.run("check mesh.npz --points ball.npy").expect(1);
+}
+
+#[test]
+fn a_refusal_advises_what_was_tried() {
+    let room = Room::new();
+    sphere_points(&room);
+    // Landmarks as far apart as the sphere is wide.
+    room.run("reconstruct points.npy -o mesh.npz --eps 1.9 --dl 1.6 --report report.json")
+        .expect(1)
+        .complains("it is verified: Betti numbers 1, 0, 1");
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(room.path("report.json")).unwrap()).unwrap();
+    let advised = &report["refusal"]["advice"]["parameters"][0];
+    room.run(&format!(
+        "reconstruct points.npy -o mesh.npz --eps {} --dl {} --models auto",
+        advised["eps"], advised["dl"]
+    ))
+    .expect(0);
 }
 
 #[test]

@@ -82,7 +82,12 @@ impl Demo {
         })?;
         write_bytes_whole(&page, &pages)?;
         write_bytes_whole(&image, &pixels)?;
-        write_reconstruction(&self.output.join("mesh.npz"), &parameters, &outcome)?;
+        write_reconstruction(
+            &self.output.join("mesh.npz"),
+            &parameters,
+            &outcome,
+            outcome.is_verified(),
+        )?;
         let input = json!({ "surface": surface.name(), "scalar": cloud.scalar_name() });
         let report = pretty(&report(&outcome, input));
         write_bytes_whole(self.output.join("report.json"), report.as_bytes())?;

@@ -4,6 +4,7 @@
 //! does. Its items are no public interface.
 
 mod check;
+mod choice;
 mod compare;
 mod compare_plot;
 mod completions;
@@ -22,6 +23,8 @@ mod parameters;
 pub mod picture;
 mod points;
 pub mod reconstruct;
+mod refused;
+mod repeat;
 mod sample;
 mod spaces;
 mod terminal;
@@ -41,7 +44,7 @@ const EXIT_CODES: &str = "Exit codes:
 Examples:
   crosscap demo
   crosscap sample two-spheres -o points.npy
-  crosscap reconstruct points.npy -o mesh.npz --eps 0.25 --dl 0.1
+  crosscap reconstruct points.npy -o mesh.npz
   crosscap check mesh.npz --points points.npy
   crosscap view mesh.npz -o mesh.html
 

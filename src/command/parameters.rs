@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::number::{positive, share};
 use super::spaces::SpaceArguments;
 use clap::{Args, ValueEnum};
-use crosscap::pipeline::{Method, Parameters};
+use crosscap::{Method, Pinned};
 use crosscap_algorithms::singularity::ModelName;
 use crosscap_core::Error;
 
@@ -47,9 +47,10 @@ pub struct ParameterArguments {
     /// Radius of a neighborhood, unit of the data
     ///
     /// Points nearer than this (strictly) are what local dimension and crossing are read from. About 50 points or more
-    /// should be so near; the surface should be nearly flat over this distance.
+    /// should be so near; the surface should be nearly flat over this distance. [default: chosen from the density of the
+    /// points]
     #[arg(long, visible_alias = "epsilon", value_name = "E", value_parser = positive)]
-    pub eps: f64,
+    pub eps: Option<f64>,
 
     /// Largest radius of a chart in the triangulation, unit of the data
     ///
@@ -59,15 +60,9 @@ pub struct ParameterArguments {
 
     /// Tolerance of the local dimension: the share of variance left over, 0 to 1
     ///
-    /// Larger values see fewer crossings. The paper uses 0.01 to 0.075.
-    #[arg(
-        long,
-        visible_alias = "dimension-tolerance",
-        value_name = "T",
-        value_parser = share,
-        default_value_t = DIMENSION_TOLERANCE
-    )]
-    pub dt: f64,
+    /// Larger values see fewer crossings. The paper uses 0.01 to 0.075. [default: 0.05]
+    #[arg(long, visible_alias = "dimension-tolerance", value_name = "T", value_parser = share)]
+    pub dt: Option<f64>,
 
     /// Estimator of the local dimension
     ///
@@ -94,13 +89,13 @@ pub struct ParameterArguments {
 
     /// Separation of the landmarks, unit of the data: the vertices of the mesh are at least so far apart
     ///
-    /// Decides how fine the mesh is. A third to a half of eps is a good start.
+    /// Decides how fine the mesh is. A third to a half of eps is a good start. [default: half of eps]
     #[arg(long, visible_alias = "landmark-separation", value_name = "L", value_parser = positive)]
-    pub dl: f64,
+    pub dl: Option<f64>,
 
-    /// Seed of the random choice of landmarks
-    #[arg(long, value_name = "S", default_value_t = 0)]
-    pub seed: u64,
+    /// Seed of the random choice of landmarks [default: 0]
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u64>,
 
     /// Take every point as 2-dimensional: no double curve is looked for, as the paper does for its manifolds
     #[arg(long)]
@@ -111,9 +106,10 @@ pub struct ParameterArguments {
     /// two-planes (a double curve), refined-two-planes (the same with the paper's equation 5), boundary (found, not
     /// given), y-junction (three sheets on a curve), triple-point (three sheets crossing in a point), isolated-crossing
     /// (two sheets of R^4 or more that have one point in common), curve (no surface around), curve-through-sheet,
-    /// curve-on-sheet. With --surface only boundary is looked for.
-    #[arg(long, value_name = "NAME,...", value_parser = models, default_value = "two-planes")]
-    pub models: Models,
+    /// curve-on-sheet. With --surface only boundary is looked for. [default: auto; two-planes where --eps and --dl are
+    /// both given]
+    #[arg(long, value_name = "NAME,...", value_parser = models)]
+    pub models: Option<Models>,
 
     /// Algorithm
     #[arg(long, value_name = "NAME", value_enum, default_value_t)]
@@ -128,44 +124,53 @@ pub struct ParameterArguments {
 }
 
 impl ParameterArguments {
-    /// The parameters of the pipeline, defaults filled in.
+    /// What is given, and so not to be chosen.
     ///
     /// # Errors
     /// [`Failure::Usage`] for values that contradict each other.
-    pub fn parameters(&self, boundary: Vec<usize>) -> Result<Parameters, Failure> {
-        let (eps, dl) = (self.eps, self.dl);
-        if dl > eps {
+    pub fn pinned(&self, boundary: Vec<usize>) -> Result<Pinned, Failure> {
+        if let (Some(eps), Some(dl)) = (self.eps, self.dl)
+            && dl > eps
+        {
             return Err(Failure::usage(format!(
                 "--dl {dl} is larger than --eps {eps}: landmarks would be farther apart than a neighborhood reaches; \
                  decrease --dl or increase --eps"
             )));
         }
-        if let Some(radius) = self.tri_eps.filter(|&radius| radius <= dl) {
+        if let (Some(radius), Some(dl)) = (self.tri_eps, self.dl)
+            && radius <= dl
+        {
             return Err(Failure::usage(format!(
                 "--tri-eps {radius} is not larger than --dl {dl}: no two landmarks would share a chart; 3 dl = {} is \
                  a good value",
                 3.0 * dl
             )));
         }
-        if let Some(ep) = self.ep.filter(|&ep| ep >= eps) {
+        if let (Some(ep), Some(eps)) = (self.ep, self.eps)
+            && ep >= eps
+        {
             return Err(Failure::usage(format!(
                 "--ep {ep} is not smaller than --eps {eps}: every point of a neighborhood would be on the double \
                  curve; decrease --ep (a tenth of eps is usual)"
             )));
         }
-        Ok(Parameters {
-            eps,
+        Ok(Pinned {
+            eps: self.eps,
             tri_eps: self.tri_eps,
             dt: self.dt,
-            dp: self.dp.unwrap_or_else(|| fit_tolerance(eps)),
-            ep: self.ep.unwrap_or_else(|| curve_tolerance(eps)),
-            dl,
+            dp: self.dp,
+            ep: self.ep,
+            dl: self.dl,
             seed: self.seed,
-            surface: self.surface,
+            surface: self.surface.then_some(true),
             boundary,
-            models: self.models.0.clone(),
-            method: self.method.into(),
-            spaces: self.spaces.spaces(),
+            models: self.models.as_ref().map(|models| models.0.clone()),
+            method: Some(self.method.into()),
+            metric: self.spaces.metric,
+            tri_metric: self.spaces.tri_metric,
+            graph: self.spaces.graph.rule(),
+            lift: self.spaces.graph.lift,
+            neighborhoods: self.spaces.neighborhoods,
             threads: threads(self.threads),
         })
     }

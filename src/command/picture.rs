@@ -5,7 +5,7 @@ use super::layout::LayoutName;
 use super::number::{betti, counted};
 use super::output::extension;
 use crosscap_backends::picture::{Layout, Scene, StillOptions, page, still};
-use crosscap_core::{Error, Mesh};
+use crosscap_core::{Error, Mesh, PointCloud};
 use std::path::Path;
 
 /// Width and height of an image, pixels.
@@ -53,6 +53,17 @@ pub fn scene(
     }
     scene.facts = facts.into_iter().map(|(k, v)| (k.into(), v)).collect();
     Ok(scene)
+}
+
+/// Shows `marks`, places in the coordinates of the mesh, where its own coordinates are shown.
+pub fn mark(scene: &mut Scene, mesh: &Mesh, marks: &PointCloud<f64>) -> Result<(), Error> {
+    let own = LayoutName::Xyz;
+    for layout in &mut scene.layouts {
+        if mesh.vertices.dimension() == 3 && layout.name == own.title() {
+            *layout = Layout::coordinates(own.title(), &mesh.vertices, Some(marks), [0, 1, 2])?;
+        }
+    }
+    Ok(())
 }
 
 fn layout(mesh: &Mesh, name: LayoutName) -> Result<Layout, Error> {

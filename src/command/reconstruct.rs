@@ -3,36 +3,40 @@
 use super::estimators::EstimatorName;
 use super::failure::Failure;
 use super::findings::{Findings, pretty};
-use super::number::counted;
-use super::parameters::ParameterArguments;
+use super::number::{counted, positive};
+use super::parameters::{MethodName, ParameterArguments};
 use super::points::PointArguments;
 use super::terminal::{Progress, complain, say};
-use super::{output, picture};
+use super::{choice, output, picture, refused};
 use clap::Args;
-use crosscap::GivenSpace;
 use crosscap::pipeline::{Outcome, Parameters, Pipeline};
+use crosscap::{Advice, Auto, GivenSpace, Pinned, Refusal};
 use crosscap_algorithms::certificate::Verdict;
 use crosscap_backends::files::{
     AnyCloud, Distances, MESH_EXTENSIONS, MeshExtras, read_distances, read_indices,
     write_bytes_whole, write_mesh,
 };
-use crosscap_core::Error;
+use crosscap_core::{Error, PointCloud};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 const EXAMPLES: &str = "Lengths (eps, tri-eps, dp, ep, dl) are in the unit of the data.
 
 Examples:
+  crosscap reconstruct points.npy -o mesh.npz
   crosscap reconstruct points.npy -o mesh.npz --eps 0.25 --dl 0.1
   crosscap reconstruct sphere.csv -o sphere.ply --eps 0.4 --dl 0.1 --surface --picture sphere.html
   crosscap reconstruct strip.npy -o strip.npz --eps 0.4 --dl 0.1 --surface --boundary rim.npy
   crosscap reconstruct points.npy -o mesh.npz --eps 0.25 --dl 0.1 --method paper --keep-unverified
 
-A mesh that is not verified is not written, nor anything else, unless --keep-unverified is given; the exit code is 1
-either way.";
+A mesh that is not verified is not written unless --keep-unverified is given; the exit code is 1 either way. Report and
+picture are written all the same, and --cut-out leaves the points around the worst place.";
 
 /// Fewest points: what one neighborhood needs.
 const LEAST_POINTS: usize = 8;
+/// Attempts with parameters of the program's choice before they are advised.
+const TRIES_FOR_ADVICE: usize = 2;
 /// How many reasons of a failure are printed.
 const REASONS: usize = 8;
 
@@ -65,15 +69,33 @@ pub struct Reconstruct {
     #[command(flatten)]
     choice: PointArguments,
 
+    /// Attempts at most, where parameters are left to the program
+    ///
+    /// A mesh that passes after others have failed counts only when another attempt, with other landmarks, agrees.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    tries: u16,
+
+    /// Seconds after which no further attempt begins
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    time_limit: Option<f64>,
+
     /// Report to write, JSON: version, parameters, counts and seconds of every stage, homology, certificate
+    ///
+    /// Written also when there is no verified mesh, with what went wrong, where, and what was tried.
     #[arg(long, value_name = "REPORT.json")]
     report: Option<PathBuf>,
 
     /// Picture to write: .html (a page to turn it in) or .png
+    ///
+    /// When the mesh is not verified it is drawn as it is, with the places of the faults marked (in R^3).
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
 
-    /// Write the files also when the mesh is not verified
+    /// Where there is no verified mesh: the points around the worst place, as a small file for a bug report
+    #[arg(long, value_name = "FILE", conflicts_with = "distances")]
+    cut_out: Option<PathBuf>,
+
+    /// Write the mesh also when it is not verified
     #[arg(long)]
     keep_unverified: bool,
 }
@@ -82,11 +104,14 @@ impl Reconstruct {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Failure> {
         // Refuse what can be refused before the work begins.
-        self.parameters.parameters(Vec::new())?;
+        self.parameters.pinned(Vec::new())?;
         self.check_outputs()?;
         let input = match &self.distances {
             Some(path) => Input::Distances(read_distances(path)?),
-            None => Input::Points(self.choice.read(self.input())?),
+            None => {
+                let cloud = self.choice.read(self.input())?;
+                Input::Points(cloud.to_f64(), cloud.scalar_name())
+            }
         };
         if input.len() < LEAST_POINTS {
             return Err(Failure::usage(format!(
@@ -95,37 +120,99 @@ impl Reconstruct {
                 counted(input.len(), "point")
             )));
         }
-        let parameters = self
-            .parameters
-            .parameters(self.boundary_rows(input.len())?)?;
-        let outcome = match &input {
-            Input::Points(cloud) => {
-                reconstruct_by(cloud, parameters.clone(), self.parameters.estimator)?
-            }
-            Input::Distances(distances) => observed(parameters.clone(), self.parameters.estimator)?
-                .reconstruct_distances(distances)?,
-        };
-        let verified = outcome.is_verified();
-        if !verified {
-            for reason in reasons(&outcome) {
-                complain(reason);
-            }
-            if !self.keep_unverified {
-                return Err(Failure::NotVerified(format!(
-                    "{}: no verified mesh, nothing written (--keep-unverified writes it as it is)",
-                    self.input().display()
-                )));
-            }
+        let pinned = self.parameters.pinned(self.boundary_rows(input.len())?)?;
+        let estimator = self.parameters.estimator;
+        let mut auto = Auto::new(pinned.clone()).tries(self.tries.into());
+        if let Some(seconds) = self.time_limit {
+            auto = auto.time_limit(Duration::from_secs_f64(seconds));
         }
-        self.write(&input, &parameters, &outcome)?;
-        if verified {
-            Ok(())
-        } else {
-            Err(Failure::NotVerified(format!(
+        let search = auto.search(input.borrowed(), &mut |parameters| {
+            observed(parameters, estimator)
+        })?;
+        let lines = choice::chosen(&self.input().display().to_string(), &pinned, &search);
+        if !lines.is_empty() {
+            say(lines.join("\n"))?;
+        }
+        let told = json!({ "density": search.density, "attempts": search.attempts, "doubt": search.doubt });
+        match search.into_verified(input.places()) {
+            Ok(outcome) => self.write(&input, &outcome, true, &told),
+            Err(refusal) => self.refuse(&input, &pinned, *refusal, &told),
+        }
+    }
+
+    /// Tells why there is no verified mesh, and leaves what was asked for.
+    fn refuse(
+        &self,
+        input: &Input,
+        pinned: &Pinned,
+        mut refusal: Refusal,
+        told: &Value,
+    ) -> Result<(), Failure> {
+        if let Some(advice) = self.better(input, pinned, &refusal)? {
+            refusal.advice = advice;
+        }
+        refused::tell(&refusal);
+        let places = input.places();
+        if let (Some(path), Some(points)) = (&self.cut_out, places) {
+            refused::write_cut_out(path, &refusal, points)?;
+        }
+        if self.keep_unverified
+            && let Ok(outcome) = &refusal.outcome
+        {
+            self.write(input, outcome, false, told)?;
+            return Err(Failure::NotVerified(format!(
                 "{}: this mesh is not verified",
                 self.output.display()
-            )))
+            )));
         }
+        if let Some(path) = &self.report {
+            refused::write_report(path, &refusal, self.described(input), told)?;
+        }
+        if let Some(path) = &self.picture {
+            refused::write_picture(path, &picture::title(self.input()), &refusal, places)?;
+        }
+        Err(Failure::NotVerified(format!(
+            "{}: no verified mesh, none written (--keep-unverified writes it as it is)",
+            self.input().display()
+        )))
+    }
+
+    /// For a run with eps and dl given: parameters of the program's choice, where they give a verified mesh.
+    fn better(
+        &self,
+        input: &Input,
+        pinned: &Pinned,
+        refusal: &Refusal,
+    ) -> Result<Option<Advice>, Failure> {
+        let given = pinned.complete().is_some() && self.parameters.method == MethodName::Cells;
+        if !given || !refused::may_be_helped(refusal) {
+            return Ok(None);
+        }
+        let free = Pinned {
+            eps: None,
+            dl: None,
+            ..pinned.clone()
+        };
+        let estimator = self.parameters.estimator;
+        let search = Auto::new(free)
+            .tries(TRIES_FOR_ADVICE)
+            .search(input.borrowed(), &mut |parameters| {
+                observed(parameters, estimator)
+            })?;
+        if !search.is_verified() {
+            return Ok(None);
+        }
+        let attempt = search.attempts.get(search.chosen);
+        let found = attempt.and_then(|a| Some((a.parameters.clone(), a.end.topology()?.clone())));
+        Ok(found.map(|(parameters, topology)| Advice::Parameters(Box::new(parameters), topology)))
+    }
+
+    /// The input, for reports.
+    fn described(&self, input: &Input) -> Value {
+        json!({
+            "file": self.input().display().to_string(),
+            "scalar": input.scalar_name(),
+        })
     }
 
     /// The file with the points or their distances.
@@ -145,6 +232,10 @@ impl Reconstruct {
         if let Some(picture) = &self.picture {
             output::check(picture, output::PICTURES)?;
             outputs.push(picture);
+        }
+        if let Some(cut_out) = &self.cut_out {
+            output::check(cut_out, output::POINTS)?;
+            outputs.push(cut_out);
         }
         let mut inputs = vec![self.input()];
         inputs.extend(self.boundary.as_deref());
@@ -173,11 +264,16 @@ impl Reconstruct {
     fn write(
         &self,
         input: &Input,
-        parameters: &Parameters,
         outcome: &Outcome,
+        verified: bool,
+        search: &Value,
     ) -> Result<(), Failure> {
         let findings = findings(outcome);
-        let verdict = verdict(outcome);
+        let verdict = if verified {
+            verdict(outcome)
+        } else {
+            "not verified".into()
+        };
         let verdict = verdict.as_str();
         // What may fail comes first: the mesh is written when everything else is.
         if let Some(path) = &self.picture {
@@ -185,13 +281,14 @@ impl Reconstruct {
             write_bytes_whole(path, &picture::bytes(path, &scene, picture::SIZE)?)?;
         }
         if let Some(path) = &self.report {
-            let input = json!({
-                "file": self.input().display().to_string(),
-                "scalar": input.scalar_name(),
-            });
-            write_bytes_whole(path, pretty(&report(outcome, input)).as_bytes())?;
+            let mut report = report(outcome, self.described(input));
+            if let (Value::Object(all), Value::Object(search)) = (&mut report, search) {
+                all.extend(search.clone());
+                all.insert("verified".into(), json!(verified));
+            }
+            write_bytes_whole(path, pretty(&report).as_bytes())?;
         }
-        write_reconstruction(&self.output, parameters, outcome)?;
+        write_reconstruction(&self.output, &outcome.report.parameters, outcome, verified)?;
         let mut lines = vec![
             format!("{}: {} ({verdict})", self.output.display(), findings.size()),
             format!("Betti numbers {}", findings.topology()),
@@ -213,31 +310,44 @@ impl Reconstruct {
 
 /// What a surface is reconstructed from.
 enum Input {
-    Points(AnyCloud),
+    /// Places, and the type that their file has them in.
+    Points(PointCloud<f64>, &'static str),
     Distances(Distances),
 }
 
 impl Input {
     fn len(&self) -> usize {
         match self {
-            Self::Points(cloud) => cloud.len(),
+            Self::Points(cloud, _) => cloud.len(),
             Self::Distances(distances) => distances.len(),
+        }
+    }
+
+    /// The points, where there are any.
+    fn places(&self) -> Option<&PointCloud<f64>> {
+        match self {
+            Self::Points(cloud, _) => Some(cloud),
+            Self::Distances(_) => None,
+        }
+    }
+
+    fn borrowed(&self) -> crosscap::auto::Input<'_> {
+        match self {
+            Self::Points(cloud, _) => crosscap::auto::Input::Points(cloud),
+            Self::Distances(distances) => crosscap::auto::Input::Distances(distances),
         }
     }
 
     fn scalar_name(&self) -> &'static str {
         match self {
-            Self::Points(cloud) => cloud.scalar_name(),
+            Self::Points(_, name) => name,
             Self::Distances(_) => "f64",
         }
     }
 }
 
-/// The verdict in a line, with what it does not cover.
+/// The verdict on a verified mesh in a line, with what it does not cover.
 fn verdict(outcome: &Outcome) -> String {
-    if !outcome.is_verified() {
-        return "not verified".into();
-    }
     let unchecked = outcome.certificate.unchecked();
     if unchecked.is_empty() {
         return "verified".into();
@@ -268,16 +378,7 @@ fn told(given: &GivenSpace) -> String {
 
 /// Runs the pipeline with progress.
 pub fn reconstruct(cloud: &AnyCloud, parameters: Parameters) -> Result<Outcome, Error> {
-    reconstruct_by(cloud, parameters, EstimatorName::default())
-}
-
-/// The same with an estimator of the local dimension.
-fn reconstruct_by(
-    cloud: &AnyCloud,
-    parameters: Parameters,
-    estimator: EstimatorName,
-) -> Result<Outcome, Error> {
-    observed(parameters, estimator)?.reconstruct(&cloud.to_f64())
+    observed(parameters, EstimatorName::default())?.reconstruct(&cloud.to_f64())
 }
 
 /// A pipeline whose progress is shown, and its warnings as they come.
@@ -328,10 +429,11 @@ pub fn write_reconstruction(
     path: &Path,
     parameters: &Parameters,
     outcome: &Outcome,
+    verified: bool,
 ) -> Result<(), Failure> {
     let mut metadata = json!({
         "crosscap": env!("CARGO_PKG_VERSION"),
-        "verified": outcome.is_verified(),
+        "verified": verified,
         "eps": parameters.eps,
         "tri_eps": parameters.tri_eps,
         "dt": parameters.dt,

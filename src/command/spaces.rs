@@ -23,15 +23,20 @@ pub struct GraphArguments {
 }
 
 impl GraphArguments {
+    /// The rule of the graph, where one is given.
+    pub fn rule(&self) -> Option<EdgeRule> {
+        match (self.graph_eps, self.graph_k) {
+            (Some(radius), _) => Some(EdgeRule::Within(radius)),
+            (None, Some(count)) => Some(EdgeRule::Nearest(count as usize)),
+            (None, None) => None,
+        }
+    }
+
     /// The usual choice with these.
     pub fn spaces(&self) -> Spaces {
         let usual = Spaces::default();
         Spaces {
-            graph: match (self.graph_eps, self.graph_k) {
-                (Some(radius), _) => EdgeRule::Within(radius),
-                (None, Some(count)) => EdgeRule::Nearest(count as usize),
-                (None, None) => usual.graph,
-            },
+            graph: self.rule().unwrap_or(usual.graph),
             lift: self.lift,
             ..usual
         }
@@ -46,8 +51,9 @@ pub struct SpaceArguments {
     /// Decides on neighborhoods, landmarks and cells. geodesic: shortest paths through a graph of neighbors. lifted:
     /// position and tangent plane together, which takes crossing sheets apart: the mesh is that of the surface before
     /// it was made to cross itself.
-    #[arg(long, value_name = "NAME", default_value_t)]
-    pub metric: MetricName,
+    /// [default: euclidean]
+    #[arg(long, value_name = "NAME")]
+    pub metric: Option<MetricName>,
 
     /// Distances of the charts: euclidean, geodesic or lifted [default: those of the analysis]
     #[arg(long, visible_alias = "triangulation-metric", value_name = "NAME")]
@@ -57,19 +63,7 @@ pub struct SpaceArguments {
     pub graph: GraphArguments,
 
     /// Size of the neighborhoods of the analysis: radius (eps everywhere), k-nearest:K (as far as the K nearest other
-    /// points) or adaptive:K (from that up to eps, as large as they look flat)
-    #[arg(long, value_name = "POLICY", default_value_t)]
-    pub neighborhoods: Neighborhoods,
-}
-
-impl SpaceArguments {
-    /// The choice for the pipeline.
-    pub fn spaces(&self) -> Spaces {
-        Spaces {
-            metric: self.metric,
-            tri_metric: self.tri_metric,
-            neighborhoods: self.neighborhoods,
-            ..self.graph.spaces()
-        }
-    }
+    /// points) or adaptive:K (from that up to eps, as large as they look flat) [default: radius]
+    #[arg(long, value_name = "POLICY")]
+    pub neighborhoods: Option<Neighborhoods>,
 }

@@ -10,6 +10,7 @@ mod run;
 pub use parameters::{Method, Parameters};
 pub use progress::Stage;
 pub use report::{Outcome, Report};
+pub(crate) use rows::{distinct_points, distinct_rows};
 pub(crate) use run::Input;
 
 use crate::spaces::{Custom, Warning};

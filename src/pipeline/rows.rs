@@ -24,7 +24,7 @@ impl Rows {
                 expected: "at least 2 coordinates".into(),
             });
         }
-        let kept = first_of_each(cloud);
+        let kept = distinct_rows(cloud);
         let duplicates = cloud.len() - kept.len();
         let (cloud, kept) = if duplicates == 0 || copies {
             (cloud.clone(), (0..cloud.len()).collect())
@@ -77,7 +77,7 @@ fn fingerprint(row: &[f64]) -> u64 {
 }
 
 /// The first row of every place, in order.
-fn first_of_each(cloud: &PointCloud<f64>) -> Vec<usize> {
+pub(crate) fn distinct_rows(cloud: &PointCloud<f64>) -> Vec<usize> {
     let mut marks: Vec<(u64, u32)> = cloud
         .iter()
         .zip(0..)
@@ -94,6 +94,16 @@ fn first_of_each(cloud: &PointCloud<f64>) -> Vec<usize> {
         }
     }
     (0..cloud.len()).filter(|&row| !copy[row]).collect()
+}
+
+/// The cloud with one row for every place.
+pub(crate) fn distinct_points(cloud: &PointCloud<f64>) -> PointCloud<f64> {
+    let kept = distinct_rows(cloud);
+    if kept.len() == cloud.len() {
+        cloud.clone()
+    } else {
+        cloud.select(&kept)
+    }
 }
 
 /// Positions of the boundary rows, or of the rows that they are copies of, among the kept ones.

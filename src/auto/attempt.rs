@@ -1,0 +1,126 @@
+//! One attempt at a reconstruction, and how it ended.
+
+use crate::pipeline::{Outcome, Parameters};
+use crosscap_algorithms::certificate::ViolationKind;
+use crosscap_core::Error;
+use serde::Serialize;
+use std::fmt;
+
+/// One attempt at a reconstruction.
+#[derive(Clone, Debug, Serialize)]
+pub struct Attempt {
+    /// The parameters.
+    pub parameters: Parameters,
+    /// Why these parameters, in a few words.
+    pub reason: String,
+    /// How it ended.
+    pub end: End,
+    /// Seconds it took.
+    pub seconds: f64,
+}
+
+/// What a mesh is up to bending, as far as homology and its pieces tell.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Topology {
+    /// Betti numbers over Q.
+    pub betti: [usize; 3],
+    /// Betti numbers over Z/2.
+    pub betti_mod2: [usize; 3],
+    /// The pieces and how they meet, in a sentence; none where they cannot be told apart.
+    pub pieces: Option<String>,
+}
+
+impl fmt::Display for Topology {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [a, b, c] = self.betti;
+        write!(f, "Betti numbers {a}, {b}, {c}")?;
+        match &self.pieces {
+            Some(pieces) => write!(f, " ({})", pieces.trim_end_matches('.')),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Places that chance may have spoiled.
+const FEW_PLACES: usize = 3;
+
+/// How an attempt ended.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum End {
+    /// With a verified mesh.
+    Verified(Topology),
+    /// With a mesh that is not verified.
+    Refused {
+        /// Stars and cells that stayed open.
+        open: usize,
+        /// Vertices of the mesh.
+        vertices: usize,
+        /// What the certificate found, each with its number of places.
+        violations: Vec<(ViolationKind, usize)>,
+    },
+    /// Before there was a mesh.
+    Failed(String),
+}
+
+impl End {
+    /// How this outcome ended.
+    pub(super) fn of(outcome: &Result<Outcome, Error>) -> Self {
+        match outcome {
+            Ok(outcome) if outcome.is_verified() => Self::Verified(Topology {
+                betti: outcome.homology.betti_rational,
+                betti_mod2: outcome.homology.betti_mod2,
+                pieces: outcome.pieces.as_ref().ok().map(ToString::to_string),
+            }),
+            Ok(outcome) => Self::Refused {
+                open: outcome.failures.len(),
+                vertices: outcome.mesh.complex.vertices,
+                violations: (outcome.certificate.violations())
+                    .map(|v| (v.kind, v.count))
+                    .collect(),
+            },
+            Err(error) => Self::Failed(error.to_string()),
+        }
+    }
+
+    /// Whether there is a verified mesh.
+    pub fn is_verified(&self) -> bool {
+        self.topology().is_some()
+    }
+
+    /// What the verified mesh is.
+    pub fn topology(&self) -> Option<&Topology> {
+        match self {
+            Self::Verified(topology) => Some(topology),
+            _ => None,
+        }
+    }
+
+    /// Whether so little is wrong that other landmarks may do: a few places, or one vertex in 200.
+    pub(super) fn is_near_miss(&self) -> bool {
+        let Self::Refused { vertices, .. } = self else {
+            return false;
+        };
+        self.places() <= FEW_PLACES.max(vertices / 200)
+    }
+
+    /// Open stars and places that the certificate complains about.
+    fn places(&self) -> usize {
+        match self {
+            Self::Refused {
+                open, violations, ..
+            } => open + violations.iter().map(|v| v.1).sum::<usize>(),
+            _ => 0,
+        }
+    }
+
+    /// How far an attempt came: the larger, the farther. Among meshes that are not verified those with
+    /// fewer places to complain about.
+    pub(super) fn rank(&self) -> (u8, std::cmp::Reverse<usize>) {
+        match self {
+            Self::Verified(_) => (2, std::cmp::Reverse(0)),
+            Self::Refused { .. } => (1, std::cmp::Reverse(self.places())),
+            Self::Failed(_) => (0, std::cmp::Reverse(0)),
+        }
+    }
+}

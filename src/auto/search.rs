@@ -1,0 +1,233 @@
+//! The attempts, one after another.
+//!
+//! Each further attempt is another chance for a wrong mesh to pass. So a mesh that passes after others
+//! have failed is not handed over at once: a second attempt with other landmarks has to pass too,
+//! and agree. Two verified attempts that disagree are two readings of the points, and neither is handed over.
+
+use super::Auto;
+use super::attempt::{Attempt, End, Topology};
+use super::density::Density;
+use super::input::Input;
+use super::moves::{Move, other_landmarks};
+use super::symptoms::Symptom;
+use crate::pipeline::{Outcome, Parameters, Pipeline};
+use crosscap_core::Error;
+use std::fmt;
+use std::time::{Duration, Instant};
+
+/// What a search for parameters yields.
+#[derive(Debug)]
+pub struct Search {
+    /// How densely the points lie; none where all lengths were pinned.
+    pub density: Option<Density>,
+    /// What was tried, in order.
+    pub attempts: Vec<Attempt>,
+    /// Which attempt counts: the verified one that is handed over, or else the one that came farthest.
+    pub chosen: usize,
+    /// What that attempt yielded. It may be verified and still not be handed over: see [`Search::doubt`].
+    pub outcome: Result<Outcome, Error>,
+    /// Why a verified outcome is not handed over.
+    pub doubt: Option<Doubt>,
+}
+
+/// Why a verified mesh is not handed over.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Doubt {
+    /// Two attempts passed with different topology.
+    TwoReadings(Topology, Topology),
+    /// One attempt passed after others had failed, and no other one confirmed it.
+    Unconfirmed(Topology),
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TwoReadings(one, other) => {
+                write!(f, "two attempts passed and disagree: {one}; {other}")
+            }
+            Self::Unconfirmed(topology) => write!(
+                f,
+                "one attempt passed after others had failed, {topology}, and no other confirmed it"
+            ),
+        }
+    }
+}
+
+impl Search {
+    /// Whether there is a mesh that may be handed over as good.
+    pub fn is_verified(&self) -> bool {
+        self.doubt.is_none() && self.outcome.as_ref().is_ok_and(Outcome::is_verified)
+    }
+}
+
+/// Other landmarks in a row, where little is wrong.
+const AGAIN: usize = 2;
+
+/// A search that is under way.
+struct Progress<'a> {
+    auto: &'a Auto,
+    input: Input<'a>,
+    density: Option<Density>,
+    attempts: Vec<Attempt>,
+    /// The attempt that came farthest.
+    best: Option<(usize, Result<Outcome, Error>)>,
+    began: Instant,
+}
+
+impl Auto {
+    /// The same from points or distances, each attempt by a pipeline that `make` puts together for
+    /// its parameters: with other parts than the usual ones, or with observers.
+    ///
+    /// # Errors
+    /// As for [`Auto::reconstruct`], and those of `make`.
+    pub fn search(
+        &self,
+        input: Input<'_>,
+        make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
+    ) -> Result<Search, Error> {
+        let (density, [eps, dl], reason) = match self.pinned().complete() {
+            Some(lengths) => (None, lengths, "as given".into()),
+            None => {
+                let density = input.density()?;
+                let (lengths, reason) = self.pinned().lengths(&density);
+                (Some(density), lengths, reason)
+            }
+        };
+        let mut progress = Progress {
+            auto: self,
+            input,
+            density,
+            attempts: Vec::new(),
+            best: None,
+            began: Instant::now(),
+        };
+        let first = self.pinned().parameters(eps, dl);
+        let symptom = progress.attempt(first.clone(), reason, make)?;
+        let doubt = match symptom {
+            Some(symptom) => progress.further(&first, symptom, make)?,
+            None => None,
+        };
+        progress.end(doubt)
+    }
+}
+
+impl Progress<'_> {
+    /// One attempt; what went wrong, where it is not verified.
+    fn attempt(
+        &mut self,
+        parameters: Parameters,
+        reason: String,
+        make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
+    ) -> Result<Option<Symptom>, Error> {
+        let since = Instant::now();
+        let outcome = self.input.run(&mut make(parameters.clone())?);
+        if let Err(error) = &outcome
+            && error.is_input()
+        {
+            return Err(error.clone());
+        }
+        let end = End::of(&outcome);
+        let symptom = (!end.is_verified()).then(|| Symptom::of(&outcome));
+        let nearer = |best: &(usize, _)| end.rank() > self.attempts[best.0].end.rank();
+        if self.best.as_ref().is_none_or(nearer) {
+            self.best = Some((self.attempts.len(), outcome));
+        }
+        self.attempts.push(Attempt {
+            parameters,
+            reason,
+            end,
+            seconds: since.elapsed().as_secs_f64(),
+        });
+        Ok(symptom)
+    }
+
+    /// Whether another attempt may begin.
+    fn may_go_on(&self) -> bool {
+        let in_time = |limit: Duration| self.began.elapsed() < limit;
+        self.attempts.len() < self.auto.tries && self.auto.time_limit.is_none_or(in_time)
+    }
+
+    /// The parameters of the last attempt, where it nearly passed and the one before was another kind.
+    fn nearly(&self) -> Option<&Parameters> {
+        let last = self
+            .attempts
+            .last()
+            .filter(|last| last.end.is_near_miss())?;
+        let again = |before: &&Attempt| {
+            before.parameters.spaces == last.parameters.spaces && before.end.is_near_miss()
+        };
+        let alike = self.attempts.iter().rev().skip(1).take_while(again).count();
+        (alike < AGAIN).then_some(&last.parameters)
+    }
+
+    /// The attempts after the first one failed with a symptom, until two agree or the budget is spent.
+    fn further(
+        &mut self,
+        first: &Parameters,
+        mut symptom: Symptom,
+        make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
+    ) -> Result<Option<Doubt>, Error> {
+        let Some(density) = self.density.clone() else {
+            return Ok(None);
+        };
+        let mut tried: Vec<Move> = Vec::new();
+        let mut passed: Option<(Topology, Parameters)> = None;
+        while self.may_go_on() {
+            let pinned = self.auto.pinned();
+            let (next, reason) = if let Some((_, parameters)) = &passed {
+                let Some(next) = other_landmarks(parameters, pinned) else {
+                    break;
+                };
+                (
+                    next,
+                    "other landmarks, to confirm the one that passed".to_string(),
+                )
+            } else if let Some(next) = self.nearly().and_then(|near| other_landmarks(near, pinned))
+            {
+                let reason = "other landmarks, as little is wrong";
+                (next, reason.to_string())
+            } else {
+                let fresh = symptom.moves().iter().filter(|m| !tried.contains(m));
+                let applied = fresh.map(|m| (*m, m.apply(first, pinned, &density)));
+                let Some((step, next)) = applied.filter_map(|(m, p)| Some((m, p?))).next() else {
+                    break;
+                };
+                tried.push(step);
+                (next, step.reason().to_string())
+            };
+            let parameters = next.clone();
+            match self.attempt(next, reason, make)? {
+                Some(found) if passed.is_none() => symptom = found,
+                // Other landmarks again.
+                Some(_) => passed = passed.map(|(topology, _)| (topology, parameters)),
+                None => {
+                    let now = self.attempts.last().and_then(|a| a.end.topology().cloned());
+                    match (passed.take(), now) {
+                        (Some((before, _)), Some(now)) if before == now => return Ok(None),
+                        (Some((before, _)), Some(now)) => {
+                            return Ok(Some(Doubt::TwoReadings(before, now)));
+                        }
+                        (_, now) => passed = now.map(|topology| (topology, parameters)),
+                    }
+                }
+            }
+        }
+        Ok(passed.map(|(topology, _)| Doubt::Unconfirmed(topology)))
+    }
+
+    fn end(self, doubt: Option<Doubt>) -> Result<Search, Error> {
+        let nothing = || Error::Shape {
+            found: "no attempt".into(),
+            expected: "at least one".into(),
+        };
+        let (chosen, outcome) = self.best.ok_or_else(nothing)?;
+        Ok(Search {
+            density: self.density,
+            attempts: self.attempts,
+            chosen,
+            outcome,
+            doubt,
+        })
+    }
+}

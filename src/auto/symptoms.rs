@@ -1,0 +1,78 @@
+//! What went wrong in an attempt, as far as it decides what to change.
+
+use super::moves::Move;
+use crate::pipeline::Outcome;
+use crosscap_algorithms::certificate::{Level, Violation, ViolationKind};
+use crosscap_core::Error;
+
+/// What went wrong, the most telling first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Symptom {
+    /// A neighborhood holds too few points.
+    Sparse,
+    /// Neighborhoods that are neither flat nor explained by a model.
+    Unexplained,
+    /// What was taken for a curve is none, or is not resolved.
+    Curves,
+    /// Charts fold, or two sheets are mixed.
+    Folds,
+    /// Edges of the mesh end where nothing was found to end.
+    Ends,
+    /// Stars stay open.
+    Open,
+    /// Mesh and points are not near each other.
+    Cover,
+}
+
+/// Points on curves from which on open cells are blamed on the curves.
+const SOME: usize = 1;
+
+impl Symptom {
+    /// What went wrong in an attempt that failed.
+    pub(super) fn of(outcome: &Result<Outcome, Error>) -> Self {
+        let outcome = match outcome {
+            Ok(outcome) => outcome,
+            Err(Error::SparseNeighborhood { .. }) => return Self::Sparse,
+            Err(Error::Dimension { .. }) => return Self::Unexplained,
+            Err(_) => return Self::Open,
+        };
+        let found = |test: &dyn Fn(&Violation) -> bool| outcome.certificate.violations().any(test);
+        let at_curves = found(&|v| {
+            use ViolationKind::*;
+            matches!(v.kind, WrongCount | UndeclaredCurve | CurveFold)
+                || v.kind.level() == Level::Links
+        });
+        if outcome.report.curve_points >= SOME && (at_curves || !outcome.failures.is_empty()) {
+            Self::Curves
+        } else if found(&|v| v.kind.level() == Level::Geometry) {
+            Self::Folds
+        } else if !outcome.failures.is_empty() {
+            Self::Open
+        } else if found(&|v| v.kind.level() == Level::Edges) {
+            Self::Ends
+        } else {
+            Self::Cover
+        }
+    }
+
+    /// What is worth trying, in order.
+    pub(super) fn moves(self) -> &'static [Move] {
+        use Move::*;
+        match self {
+            Self::Sparse => &[Larger, Local, Closed, Ending],
+            Self::Unexplained => &[Closed, Ending, Smaller, Local],
+            Self::Curves => &[Closed, Ending, Smaller, Local, Finer, Unfolded, Larger],
+            Self::Folds | Self::Open => &[Unfolded, Closed, Smaller, Ending, Local, Finer, Larger],
+            Self::Ends => &[Larger, Ending, Closed, Smaller, Unfolded],
+            Self::Cover => &[
+                OtherLandmarks,
+                Smaller,
+                Larger,
+                Closed,
+                Ending,
+                Unfolded,
+                Local,
+            ],
+        }
+    }
+}

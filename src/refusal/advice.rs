@@ -1,0 +1,105 @@
+//! What to do about it.
+
+use super::fault::{Fault, FaultKind};
+use crate::auto::Topology;
+use crate::pipeline::{Outcome, Parameters};
+use crosscap_core::Error;
+use serde::Serialize;
+use std::fmt;
+
+/// The best thing to do about a refusal.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Advice {
+    /// Other parameters, which were tried and give a verified mesh.
+    Parameters(Box<Parameters>, Topology),
+    /// So many points in all, spread like those that are there.
+    MorePoints(usize),
+    /// Less noise, or a coarser mesh than this landmark separation gives.
+    LessNoise {
+        /// The landmark separation that was tried, unit of the data.
+        dl: Option<f64>,
+    },
+    /// Leave out the points around these places, or the coordinates that are none.
+    FewerDimensions,
+    /// Leave points out.
+    LeaveOut {
+        /// Their rows, the first few.
+        rows: Vec<usize>,
+    },
+    /// Tell where the surface ends.
+    Boundary,
+    /// More points where sheets meet, or a model of one's own.
+    Model,
+    /// More attempts.
+    MoreTries,
+}
+
+/// How many times as many points are asked for at least.
+const LEAST_INCREASE: f64 = 1.5;
+
+impl Advice {
+    /// What to do about faults, by the one of most places.
+    pub(super) fn on(faults: &[Fault], outcome: &Result<Outcome, Error>) -> Self {
+        let report = outcome.as_ref().ok().map(|outcome| &outcome.report);
+        let Some(first) = faults.first() else {
+            return Self::MoreTries;
+        };
+        let more = |times: f64| {
+            let points = report.map_or(0, |report| report.points) as f64;
+            Self::MorePoints((points * times.max(LEAST_INCREASE)) as usize)
+        };
+        match first.kind {
+            FaultKind::Curvature | FaultKind::TooFewPoints => more(first.measure.unwrap_or(2.0)),
+            FaultKind::TwoReadings | FaultKind::Precision => more(2.0),
+            FaultKind::Noise => Self::LessNoise {
+                dl: report.map(|report| report.parameters.dl),
+            },
+            FaultKind::Dimension => Self::FewerDimensions,
+            FaultKind::Unclaimed => Self::Model,
+            FaultKind::Outliers => Self::LeaveOut {
+                rows: first.worst.iter().filter_map(|spot| spot.row).collect(),
+            },
+            FaultKind::Ends => Self::Boundary,
+            FaultKind::Unresolved => Self::MoreTries,
+        }
+    }
+}
+
+impl fmt::Display for Advice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameters(found, topology) => write!(
+                f,
+                "with eps {} and dl {} it is verified: {topology}",
+                found.eps, found.dl
+            ),
+            Self::MorePoints(0) => f.write_str("sample more densely"),
+            Self::MorePoints(count) => {
+                write!(f, "sample more densely: about {count} points in all would do")
+            }
+            Self::LessNoise { dl: Some(dl) } => write!(
+                f,
+                "measure with less noise, or give a landmark separation above dl = {dl} (--dl)"
+            ),
+            Self::LessNoise { dl: None } => {
+                f.write_str("measure with less noise, or give a larger landmark separation (--dl)")
+            }
+            Self::FewerDimensions => f.write_str(
+                "leave out the points there, or the columns that are no coordinates: the points are those of no surface",
+            ),
+            Self::LeaveOut { rows } => {
+                let rows: Vec<String> = rows.iter().map(usize::to_string).collect();
+                write!(f, "leave out points that lie by themselves (row {})", rows.join(", "))
+            }
+            Self::Boundary => {
+                f.write_str("say where the surface ends (--boundary), or let it be found (--models auto)")
+            }
+            Self::Model => f.write_str(
+                "sample more densely where sheets meet; a pinch point or another kind of singularity needs a model of its own",
+            ),
+            Self::MoreTries => f.write_str("allow more attempts (--tries), or give dl (--dl)"),
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! What went wrong, by kind.
+
+use super::places::{Trouble, troubles};
+use super::surroundings::{Look, Surroundings};
+use crate::auto::Doubt;
+use crate::pipeline::{Outcome, distinct_rows};
+use crosscap_backends::euclidean::EuclideanOracle;
+use crosscap_core::{Error, PointCloud};
+use serde::Serialize;
+use std::fmt;
+
+/// What can be wrong with a cloud, or with what it was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum FaultKind {
+    /// The surface bends more than its points can follow.
+    Curvature,
+    /// Points scatter across the surface.
+    Noise,
+    /// Points fill a space of more than two dimensions.
+    Dimension,
+    /// Sheets meet in a way that no model claims: a pinch point, more sheets than any model has.
+    Unclaimed,
+    /// Neighborhoods hold too few points.
+    TooFewPoints,
+    /// Points that no part of the surface is near.
+    Outliers,
+    /// The points can be read in two ways.
+    TwoReadings,
+    /// The surface ends where nothing was found that ends.
+    Ends,
+    /// Coordinates are rounded to a step that is not small against the spacing of the points.
+    Precision,
+    /// Nothing is seen in the points themselves: the landmarks or the charts failed.
+    Unresolved,
+}
+
+/// A place in the data.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Spot {
+    /// Row of the input, where it is one.
+    pub row: Option<usize>,
+    /// Coordinates, unit of the data.
+    pub coordinates: Vec<f64>,
+    /// Spacing of the points there, unit of the data; none where points are not at hand.
+    pub spacing: Option<f64>,
+}
+
+/// One kind of thing that went wrong.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fault {
+    /// The kind.
+    pub kind: FaultKind,
+    /// In how many places.
+    pub count: usize,
+    /// The worst place.
+    pub worst: Option<Spot>,
+    /// How bad it is there: in local spacings for noise, how many times as many points are wanted for curvature
+    /// and too few points.
+    pub measure: Option<f64>,
+    /// What was seen, in words.
+    pub detail: String,
+    /// Rows of the input at its places, the first [`Fault::ROWS`].
+    pub rows: Vec<usize>,
+}
+
+impl Fault {
+    /// Rows that are listed.
+    pub const ROWS: usize = 60;
+}
+
+/// The faults of an outcome that is not handed over, those of most places first.
+pub(super) fn faults(
+    outcome: &Result<Outcome, Error>,
+    doubt: Option<&Doubt>,
+    points: Option<&PointCloud<f64>>,
+) -> Vec<Fault> {
+    let mut faults: Vec<Fault> = Vec::new();
+    if let Some(doubt) = doubt {
+        faults.push(Fault {
+            kind: FaultKind::TwoReadings,
+            count: 1,
+            worst: None,
+            measure: None,
+            detail: doubt.to_string(),
+            rows: Vec::new(),
+        });
+    }
+    // Points too large for the tree were refused before.
+    let oracle = points.and_then(|points| EuclideanOracle::new(points.clone()).ok());
+    // The certificate has seen one point for every place.
+    let kept = points.map(distinct_rows);
+    for trouble in troubles(outcome, kept.as_deref()) {
+        let found = judged(&trouble, oracle.as_ref());
+        match faults.iter_mut().find(|fault| fault.kind == found.kind) {
+            None => faults.push(found),
+            Some(known) => {
+                known.count += found.count;
+                let room = Fault::ROWS.saturating_sub(known.rows.len());
+                known.rows.extend(found.rows.iter().take(room));
+                if found.measure > known.measure {
+                    known.worst = found.worst;
+                    known.measure = found.measure;
+                }
+            }
+        }
+    }
+    faults.sort_by_key(|fault| {
+        (
+            fault.kind != FaultKind::TwoReadings,
+            std::cmp::Reverse(fault.count),
+        )
+    });
+    faults
+}
+
+/// The fault that a trouble is, by how the points lie there.
+fn judged(trouble: &Trouble, oracle: Option<&EuclideanOracle<f64>>) -> Fault {
+    let around = trouble
+        .row
+        .zip(oracle)
+        .and_then(|(row, oracle)| Surroundings::of(oracle, row));
+    let (kind, measure) = match (trouble.kind, around.map(|a| (a, a.look()))) {
+        (Some(FaultKind::TooFewPoints), _) => (FaultKind::TooFewPoints, trouble.measure),
+        (_, Some((a, Look::Bent))) => (FaultKind::Curvature, Some(a.wanted())),
+        (_, Some((a, Look::Noisy))) => (FaultKind::Noise, Some(a.thickness / a.spacing)),
+        (_, Some((a, Look::Solid))) => (FaultKind::Dimension, Some(a.growth)),
+        (_, Some((a, Look::Meeting))) => (FaultKind::Unclaimed, Some(a.thickness / a.spacing)),
+        (Some(kind), _) => (kind, trouble.measure),
+        (None, _) => (FaultKind::Unresolved, trouble.measure),
+    };
+    Fault {
+        kind,
+        count: trouble.count,
+        worst: (trouble.row.is_some() || !trouble.coordinates.is_empty()).then(|| Spot {
+            row: trouble.row,
+            coordinates: trouble.row.zip(oracle).map_or_else(
+                || trouble.coordinates.clone(),
+                |(row, oracle)| oracle.cloud().point(row).to_vec(),
+            ),
+            spacing: around.map(|a| a.spacing),
+        }),
+        measure,
+        detail: trouble.detail.clone(),
+        rows: trouble.row.into_iter().collect(),
+    }
+}
+
+impl FaultKind {
+    /// What it is, in a few words.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Curvature => "the surface bends more than its points can follow",
+            Self::Noise => "points scatter across the surface",
+            Self::Dimension => "the points fill a space of more than two dimensions",
+            Self::Unclaimed => "sheets meet in a way that no model claims",
+            Self::TooFewPoints => "too few points",
+            Self::Outliers => "points that no part of the surface is near",
+            Self::TwoReadings => "the points do not decide",
+            Self::Ends => "the mesh ends where nothing was found that ends",
+            Self::Precision => {
+                "coordinates are rounded to a step that is not small against the spacing"
+            }
+            Self::Unresolved => "landmarks or charts failed where the points look sound",
+        }
+    }
+}
+
+/// Coordinates that are written out.
+const SHOWN: usize = 6;
+
+impl fmt::Display for Spot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shown: Vec<String> = (self.coordinates.iter().take(SHOWN))
+            .map(|x| format!("{x:.4}"))
+            .collect();
+        let more = if self.coordinates.len() > SHOWN {
+            ", .."
+        } else {
+            ""
+        };
+        match self.row {
+            Some(row) => write!(f, "row {row} ({}{more})", shown.join(", ")),
+            None => write!(f, "({}{more})", shown.join(", ")),
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.kind.meaning())?;
+        match (self.kind, self.measure) {
+            (FaultKind::Noise, Some(m)) => write!(f, ", by up to {m:.1} of their spacing")?,
+            (FaultKind::Curvature | FaultKind::TooFewPoints, Some(m)) if m > 1.0 => {
+                write!(f, ", about {m:.1} times as many would do")?;
+            }
+            _ => {}
+        }
+        let plural = if self.count == 1 { "place" } else { "places" };
+        write!(f, ": {} {plural}", self.count)?;
+        if let Some(worst) = &self.worst {
+            write!(f, ", the worst at {worst}")?;
+            if let Some(spacing) = worst.spacing {
+                write!(f, ", where points are {spacing:.3e} apart")?;
+            }
+        }
+        if self.detail.is_empty() {
+            Ok(())
+        } else {
+            write!(f, " ({})", self.detail)
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Where a reconstruction failed, gathered from its stages.
+
+use super::fault::FaultKind;
+use crate::pipeline::Outcome;
+use crosscap_algorithms::certificate::{Place, Violation, ViolationKind};
+use crosscap_core::{Error, Mesh};
+
+/// Something that failed at a place.
+pub(super) struct Trouble {
+    /// Row of the input, where it is one.
+    pub row: Option<usize>,
+    /// Coordinates, empty where they are not known.
+    pub coordinates: Vec<f64>,
+    /// What it is, where the stage that failed knows.
+    pub kind: Option<FaultKind>,
+    /// How bad it is: see [`super::Fault::measure`].
+    pub measure: Option<f64>,
+    /// How many places it stands for.
+    pub count: usize,
+    /// What the stage said.
+    pub detail: String,
+}
+
+/// Open stars that are looked at, at most.
+const STARS: usize = 60;
+
+/// Everything that failed.
+/// `kept` are the rows of the input that the certificate has seen, where those are not all.
+pub(super) fn troubles(outcome: &Result<Outcome, Error>, kept: Option<&[usize]>) -> Vec<Trouble> {
+    match outcome {
+        Err(error) => vec![of_error(error)],
+        Ok(outcome) => {
+            let stars = outcome.failures.iter().map(of_error);
+            let mut all: Vec<Trouble> = stars.take(STARS).collect();
+            // Those beyond are counted where the first ones are.
+            if let Some(first) = all.first_mut() {
+                first.count += outcome.failures.len().saturating_sub(STARS);
+            }
+            let violations = outcome.certificate.violations();
+            all.extend(violations.flat_map(|v| of_violation(v, &outcome.mesh, kept)));
+            all
+        }
+    }
+}
+
+fn of_error(error: &Error) -> Trouble {
+    let (row, kind, measure, count) = match error {
+        Error::SparseNeighborhood {
+            point,
+            found,
+            needed,
+            ..
+        } => {
+            let wanted = *needed as f64 / (*found).max(1) as f64;
+            (Some(*point), Some(FaultKind::TooFewPoints), Some(wanted), 1)
+        }
+        Error::Dimension { point, count, .. } => (Some(*point), None, None, *count),
+        Error::Triangulation { point, .. } => (*point, None, None, 1),
+        Error::Law { point, .. } => (Some(*point), None, None, 1),
+        _ => (None, None, None, 1),
+    };
+    Trouble {
+        row,
+        coordinates: Vec::new(),
+        kind,
+        measure,
+        count,
+        detail: match error {
+            Error::Triangulation { reason, .. } => reason.clone(),
+            _ => String::new(),
+        },
+    }
+}
+
+/// One trouble for each place of a violation that is listed; the first stands for those that are not.
+fn of_violation<'a>(
+    violation: &'a Violation,
+    mesh: &'a Mesh,
+    kept: Option<&'a [usize]>,
+) -> impl Iterator<Item = Trouble> + 'a {
+    let kind = match violation.kind {
+        ViolationKind::UncoveredPoints | ViolationKind::UnusedLandmarks => {
+            Some(FaultKind::Outliers)
+        }
+        ViolationKind::UndeclaredBoundary | ViolationKind::BoundaryOfClosed => {
+            Some(FaultKind::Ends)
+        }
+        ViolationKind::InadmissibleLink | ViolationKind::SplitLink | ViolationKind::Pinch => {
+            Some(FaultKind::Unclaimed)
+        }
+        _ => None,
+    };
+    let unlisted = violation.count.saturating_sub(violation.places.len());
+    let whole = violation.places.is_empty().then_some(None);
+    let listed = violation.places.iter().map(|&place| Some(place));
+    let all = listed.chain(whole).enumerate();
+    all.map(move |(k, place)| Trouble {
+        row: place.and_then(|place| match (place, kept) {
+            (Place::Point(p), Some(kept)) if violation.kind != ViolationKind::UnusedLandmarks => {
+                kept.get(p).copied()
+            }
+            _ => row(place, mesh),
+        }),
+        coordinates: if k == 0 {
+            violation.coordinates.clone()
+        } else {
+            Vec::new()
+        },
+        kind,
+        measure: None,
+        count: if k == 0 { 1 + unlisted } else { 1 },
+        detail: violation.kind.meaning().into(),
+    })
+}
+
+/// The row of the input that a place of the mesh stands for.
+fn row(place: Place, mesh: &Mesh) -> Option<usize> {
+    let triangle = |t: u32| mesh.complex.triangles.get(t as usize).map(|t| t[0]);
+    let vertex = match place {
+        Place::Point(row) => return Some(row),
+        Place::Vertex(v) | Place::Vertices([v, _]) | Place::Edge([v, _]) => Some(v),
+        Place::Triangle(t) | Place::Triangles([t, _]) => triangle(t),
+        Place::CurveEdge(e) => mesh.complex.curve_edges.get(e as usize).map(|e| e.ends[0]),
+    };
+    let row = *mesh.point_index.get(vertex? as usize)?;
+    usize::try_from(row).ok()
+}

@@ -1,0 +1,144 @@
+//! How the points lie around a place.
+
+use crosscap_algorithms::principal::PrincipalFrame;
+use crosscap_backends::euclidean::EuclideanOracle;
+use crosscap_core::{Neighbor, NeighborhoodOracle, PointCloud};
+
+/// The smaller neighborhood: enough for a plane.
+const FEW: usize = 15;
+/// The larger one has four times as many points, and on a surface twice the radius.
+const MANY: usize = 60;
+/// Points around a place grow with the power of the radius that the dimension is; beyond this the points fill a space.
+const VOLUME: f64 = 2.6;
+/// A thickness in spacings below which points count as lying on a sheet.
+const THIN: f64 = 0.25;
+/// A thickness that grows less than this between the two neighborhoods is that of the points themselves.
+const STEADY: f64 = 1.5;
+/// A thickness that grows more than this bends: the height over a plane grows with the square of the radius.
+const BENDING: f64 = 2.7;
+/// A sheet is flat enough for charts when its thickness is at most this share of the radius.
+const FLAT: f64 = 0.08;
+
+/// How the points lie around a place, at two sizes of a neighborhood.
+///
+/// The thickness is the root mean squared distance of the points from the plane that fits them best.
+/// Between a neighborhood and one of twice the radius it stays as it is where points scatter across
+/// a sheet, doubles where sheets meet or the points fill a space, and grows fourfold where one sheet bends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surroundings {
+    /// Spacing of the points, unit of the data.
+    pub spacing: f64,
+    /// The power of the radius with which the number of points grows.
+    pub growth: f64,
+    /// Thickness of the 15 nearest points, unit of the data.
+    pub thickness: f64,
+    /// Thickness of the 60 nearest points, unit of the data.
+    pub wide_thickness: f64,
+    /// Distance of the 60th point, unit of the data.
+    pub radius: f64,
+}
+
+/// What the surroundings of a place look like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Look {
+    /// A sheet that is flat at this density.
+    Flat,
+    /// A sheet that bends too much for this density.
+    Bent,
+    /// A sheet across which the points scatter.
+    Noisy,
+    /// Points that fill a space of more than two dimensions.
+    Solid,
+    /// Several sheets.
+    Meeting,
+}
+
+impl Surroundings {
+    /// The surroundings of a row of a cloud that `oracle` serves; none for fewer than 61 points.
+    pub fn of(oracle: &EuclideanOracle<f64>, row: usize) -> Option<Self> {
+        let mut near: Vec<Neighbor<f64>> = Vec::new();
+        oracle.nearest(row, MANY + 1, &mut near);
+        let (small, radius) = (near.get(FEW)?.distance, near.get(MANY)?.distance);
+        if small <= 0.0 || radius <= small {
+            return None;
+        }
+        let cloud = oracle.cloud();
+        Some(Self {
+            spacing: small * (std::f64::consts::PI / FEW as f64).sqrt(),
+            growth: (MANY as f64 / FEW as f64).ln() / (radius / small).ln(),
+            thickness: thickness(cloud, &near[..=FEW]),
+            wide_thickness: thickness(cloud, &near),
+            radius,
+        })
+    }
+
+    /// What they look like.
+    pub(super) fn look(&self) -> Look {
+        let grown = self.wide_thickness / self.thickness.max(f64::MIN_POSITIVE);
+        if self.wide_thickness <= FLAT * self.radius {
+            Look::Flat
+        } else if self.growth > VOLUME && grown > STEADY {
+            Look::Solid
+        } else if self.thickness > THIN * self.spacing && grown < STEADY {
+            Look::Noisy
+        } else if grown > BENDING {
+            Look::Bent
+        } else {
+            Look::Meeting
+        }
+    }
+
+    /// How many times as many points would make the sheet flat enough.
+    pub(super) fn wanted(&self) -> f64 {
+        // Thickness over radius falls with the radius, and that with the root of the number of points.
+        (self.wide_thickness / (FLAT * self.radius)).powi(2)
+    }
+}
+
+/// Root mean squared distance of points from their best plane.
+fn thickness(cloud: &PointCloud<f64>, points: &[Neighbor<f64>]) -> f64 {
+    let frame = PrincipalFrame::of(cloud, points.iter().map(|x| x.index));
+    frame.variances.iter().skip(2).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crosscap_algorithms::surfaces::Random;
+
+    /// What most of the points near the middle of a cloud look like.
+    fn looks(row: impl Fn(&mut Random) -> [f64; 3], count: usize) -> Look {
+        let random = &mut Random::new(5);
+        let rows: Vec<f64> = (0..count).flat_map(|_| row(random)).collect();
+        let oracle = EuclideanOracle::new(PointCloud::new(3, rows).unwrap()).unwrap();
+        let middle = |&row: &usize| {
+            let place = oracle.cloud().point(row);
+            place[0].abs() < 0.2 && place[1].abs() < 0.2
+        };
+        let found = (0..count).filter(middle).take(25);
+        let all: Vec<Look> = found
+            .map(|row| Surroundings::of(&oracle, row).unwrap().look())
+            .collect();
+        let times = |look: &Look| all.iter().filter(|other| *other == look).count();
+        *all.iter().max_by_key(|look| times(look)).unwrap()
+    }
+
+    fn at(random: &mut Random) -> [f64; 2] {
+        [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]
+    }
+
+    #[test]
+    fn kinds_of_surroundings_are_told_apart() {
+        let flat = |r: &mut Random| [at(r)[0], at(r)[1], 0.0];
+        assert_eq!(looks(flat, 4000), Look::Flat);
+        let noisy = |r: &mut Random| [at(r)[0], at(r)[1], 0.03 * r.normal()];
+        assert_eq!(looks(noisy, 4000), Look::Noisy);
+        let solid = |r: &mut Random| [at(r)[0], at(r)[1], at(r)[0]];
+        assert_eq!(looks(solid, 4000), Look::Solid);
+        let bent = |r: &mut Random| {
+            let [x, y] = at(r);
+            [x, y, 2.5 * x * x]
+        };
+        assert_eq!(looks(bent, 800), Look::Bent);
+    }
+}
