@@ -307,19 +307,7 @@ impl Parts {
                     Ok(CurveEdge::new(a, b, cells))
                 })
                 .collect::<Parsed<Vec<_>>>()?,
-            None => census
-                .iter()
-                .filter(|(_, triangles)| *triangles != 2)
-                .map(|&([a, b], triangles)| {
-                    let cells = u8::try_from(triangles).map_err(|_| {
-                        Flaw::new(
-                            format!("{triangles} triangles at the edge [{a}, {b}]"),
-                            "at most 255",
-                        )
-                    })?;
-                    Ok(CurveEdge::new(a, b, cells))
-                })
-                .collect::<Parsed<Vec<_>>>()?,
+            None => deduced(&census)?,
         };
         let of_length = |name: &str, all: Vec<i64>, wanted: usize| {
             if all.len() == wanted {
@@ -390,6 +378,28 @@ fn census(triangles: &[[u32; 3]]) -> Vec<([u32; 2], i64)> {
         .chunk_by(|a, b| a == b)
         .map(|run| (run[0], run.len() as i64))
         .collect()
+}
+
+/// The curves that triangles alone tell: edges with any number of them but two.
+fn deduced(census: &[([u32; 2], i64)]) -> Parsed<Vec<CurveEdge>> {
+    census
+        .iter()
+        .filter(|(_, triangles)| *triangles != 2)
+        .map(|&([a, b], triangles)| {
+            let cells = u8::try_from(triangles).map_err(|_| {
+                Flaw::new(
+                    format!("{triangles} triangles at the edge [{a}, {b}]"),
+                    "at most 255",
+                )
+            })?;
+            Ok(CurveEdge::new(a, b, cells))
+        })
+        .collect()
+}
+
+/// Whether the curves of a complex are those that its triangles alone tell.
+pub(crate) fn tells_its_curves(complex: &Complex) -> bool {
+    deduced(&census(&complex.triangles)).is_ok_and(|curves| curves == complex.curve_edges)
 }
 
 fn triangles_at(census: &[([u32; 2], i64)], a: u32, b: u32) -> i64 {

@@ -1,12 +1,13 @@
 //! Polygon files, `.ply`, ASCII and binary.
 //!
-//! Written as little-endian binary in double precision, hence lossless. Edges have two properties
-//! and no more, because other programs stumble over a third: how many cells meet at them stands in
-//! comments of the header, `comment cells 4 120`: the next 120 edges have 4.
+//! Written as little-endian binary in double precision, hence lossless. Other programs stumble over
+//! edges: meshio over any, most over a third property. So edges are written only when the triangles
+//! do not tell where the curves are, and how many cells meet at them stands in comments of the
+//! header, `comment cells 4 120`: the next 120 edges have 4.
 
 use super::columns::{ColumnChoice, pick};
 use super::error::{Flaw, Parsed, excerpt};
-use super::mesh::{Parts, Sheet};
+use super::mesh::{Parts, Sheet, tells_its_curves};
 use super::npy::{Array, Numbers};
 use super::ply_reader::{Element, Reader, Rows, Type};
 use crosscap_core::{CurveEdge, PointCloud};
@@ -190,11 +191,15 @@ pub(crate) fn mesh_bytes(sheet: &Sheet<'_>) -> Vec<u8> {
     if sheet.pieces.is_some() {
         header += &format!("property {} piece\n", name(narrow_pieces));
     }
-    header += &format!(
-        "element edge {}\nproperty int vertex1\nproperty int vertex2\n",
-        complex.curve_edges.len()
-    );
     let mut curves: Vec<&CurveEdge> = complex.curve_edges.iter().collect();
+    if tells_its_curves(complex) {
+        curves.clear();
+    } else {
+        header += &format!(
+            "element edge {}\nproperty int vertex1\nproperty int vertex2\n",
+            curves.len()
+        );
+    }
     curves.sort_by_key(|e| e.cells);
     for run in curves.chunk_by(|a, b| a.cells == b.cells) {
         header += &format!("comment cells {} {}\n", run[0].cells, run.len());
@@ -220,8 +225,10 @@ pub(crate) fn mesh_bytes(sheet: &Sheet<'_>) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::mesh::mesh_bytes as mesh_file;
     use super::*;
-    use crate::files::Place;
+    use crate::files::{MeshExtras, Place};
+    use crosscap_core::{Complex, Mesh};
 
     #[test]
     fn ascii_with_other_properties_keeps_single_precision() {
@@ -256,6 +263,24 @@ mod tests {
                 assert_eq!(flaw.place, Place::Part("vertex".into()), "{flaw:?}");
             }
         }
+    }
+
+    #[test]
+    fn edges_are_written_only_when_triangles_do_not_tell_them() {
+        let written = |curves: Vec<CurveEdge>| {
+            let complex = Complex::new(4, vec![[0, 1, 2], [1, 2, 3]], curves).unwrap();
+            let places = PointCloud::new(3, vec![0.5; 12]).unwrap();
+            let mesh = Mesh::new(complex, places, vec![-1; 4]).unwrap();
+            let extras = MeshExtras::default();
+            let bytes = mesh_file("ply", &mesh, &extras, None).unwrap().unwrap();
+            assert_eq!(parse_mesh(&bytes).unwrap().finish().unwrap().mesh, mesh);
+            bytes.windows(12).any(|w| w == b"element edge")
+        };
+        let rim = [[0, 1], [0, 2], [1, 3], [2, 3]].map(|[a, b]| CurveEdge::new(a, b, 1));
+        assert!(!written(rim.to_vec()));
+        assert!(written(rim[1..].to_vec()));
+        assert!(written(vec![]));
+        assert!(written([&rim[..], &[CurveEdge::new(0, 3, 0)]].concat()));
     }
 
     #[test]

@@ -83,7 +83,7 @@ pub fn read_points(path: impl AsRef<Path>, options: &PointOptions) -> Result<Any
 /// assert!(file.remarks[0].to_string().contains("left out: intensity"));
 /// std::fs::write(&path, "x,y,z\n0,0,1\n1,0,nan\n").unwrap();
 /// let error = read_point_file(&path, &PointOptions::default()).unwrap_err();
-/// assert!(error.to_string().ends_with("line 3, column 3: found NaN, expected a finite number"));
+/// assert!(error.to_string().contains("line 3, column 3: found NaN, expected a finite number"));
 /// ```
 pub fn read_point_file(
     path: impl AsRef<Path>,
@@ -296,6 +296,13 @@ impl Rows {
         if self.picked.why != Why::Asked {
             idle(&self.grid(), &self.picked.kept, &mut remarks);
         }
+        // No method here has a use for so few points in so many dimensions.
+        if self.rows * 8 < self.picked.kept.len() {
+            remarks.push(Remark::Wide {
+                rows: self.rows,
+                columns: self.picked.kept.len(),
+            });
+        }
         let kept = self.picked.kept;
         let points = cloud(self.rows, kept.len(), self.numbers).map_err(|mut flaw| {
             // The column as the file counts it.
@@ -355,7 +362,7 @@ fn array_name(archive: &Archive<'_>, wanted: Option<&str>) -> Parsed<String> {
         [only] => Ok(only.clone()),
         names => Err(Flaw::new(
             format!("the arrays [{}]", names.join(", ")),
-            "one, or one named points or vertices, or the name of the one to take",
+            "one, or one named points or vertices, or the name of the one to take (--array)",
         )),
     }
 }

@@ -61,6 +61,13 @@ pub enum Remark {
         /// What stands in it.
         value: f64,
     },
+    /// There are many more coordinates than points: rows and columns may have changed places.
+    Wide {
+        /// Number of points, the rows.
+        rows: usize,
+        /// Number of coordinates, the columns.
+        columns: usize,
+    },
     /// Single or half precision cannot tell neighboring points well apart.
     Coarse {
         /// Bits of a number.
@@ -126,6 +133,11 @@ impl fmt::Display for Remark {
             Self::Constant { column, value } => write!(
                 f,
                 "column {column} (from 0) is {value} in all rows; --columns leaves it out"
+            ),
+            Self::Wide { rows, columns } => write!(
+                f,
+                "{rows} rows are taken for points, {columns} columns for their coordinates; if it is the other way \
+                 round: --transpose"
             ),
             Self::Coarse {
                 bits,

@@ -251,15 +251,11 @@ impl Reader<'_> {
             ));
         }
         let x = number(comma.as_deref().unwrap_or(field), line, column).map_err(|flaw| {
-            let advice = if flaw.found.starts_with('"') {
-                "a number: leave the row out, or the column by --columns"
-            } else {
-                return flaw;
-            };
-            Flaw {
-                expected: advice.into(),
-                ..flaw
-            }
+            let expected = format!(
+                "{}: leave the row out, or the column (--columns)",
+                flaw.expected
+            );
+            Flaw { expected, ..flaw }
         })?;
         if let Some(table) = &mut self.table {
             table.numbers.push(x);

@@ -520,6 +520,14 @@ fn columns_that_tell_nothing_are_told() {
         },
     ];
     assert_eq!(read("csv", numbered.as_bytes()), expected);
+    let flat = npy::bytes(&[3, 100], &[0.5; 300]);
+    assert_eq!(
+        read("npy", &flat),
+        [Remark::Wide {
+            rows: 3,
+            columns: 100
+        }]
+    );
     let named = format!("id,x,y,z\n{numbered}");
     let [
         Remark::Named { left, .. },
