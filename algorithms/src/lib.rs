@@ -19,6 +19,7 @@ pub mod neighborhood;
 mod orthogonal;
 pub mod pieces;
 pub mod predicate;
+pub mod prepare;
 pub mod principal;
 pub mod scaling;
 pub mod singularity;

@@ -8,6 +8,7 @@ use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
 use nalgebra::Vector3;
+use std::cell::RefCell;
 
 /// A curve that pierces a sheet: a point, two arcs without triangles, one cell.
 ///
@@ -70,6 +71,7 @@ impl CurveOnSheet {
 }
 
 /// Sheet and curve of a neighborhood.
+#[derive(Clone)]
 struct Fit {
     curve: QuadraticCurve,
     /// Where they meet.
@@ -90,7 +92,52 @@ fn off_sheet(sheet: &QuadraticPatch, points: &[Vector3<f64>], limit: f64) -> Vec
         .collect()
 }
 
+/// A fit with all that it was made from.
+struct Kept {
+    coordinates: Vec<f64>,
+    fitted: usize,
+    center: usize,
+    radius: f64,
+    tolerance: Tolerance,
+    fit: Result<Fit, Rejection>,
+}
+
+impl Kept {
+    fn is_of(&self, local: &LocalPoints<'_>, tolerance: &Tolerance) -> bool {
+        (self.fitted, self.center) == (local.fitted, local.center)
+            && self.radius == local.radius
+            && self.tolerance == *tolerance
+            && self.coordinates == local.coordinates
+    }
+}
+
+thread_local! {
+    /// The last fit of this thread. Whether the curve ends on the sheet is asked right after whether it goes
+    /// through, about the same points, and the fit is the same; comparing the points takes a hundredth of
+    /// the time of fitting.
+    static LAST: RefCell<Option<Kept>> = const { RefCell::new(None) };
+}
+
 impl Fit {
+    fn of(local: &LocalPoints<'_>, tolerance: &Tolerance) -> Result<Self, Rejection> {
+        LAST.with_borrow_mut(|last| {
+            let kept = last.take().filter(|kept| kept.is_of(local, tolerance));
+            if let Some(kept) = kept {
+                return kept.fit;
+            }
+            let fit = Self::new(local, tolerance);
+            *last = Some(Kept {
+                coordinates: local.coordinates.to_vec(),
+                fitted: local.fitted,
+                center: local.center,
+                radius: local.radius,
+                tolerance: *tolerance,
+                fit: fit.clone(),
+            });
+            fit
+        })
+    }
+
     fn new(local: &LocalPoints<'_>, tolerance: &Tolerance) -> Result<Self, Rejection> {
         at_least(PATCH_POINTS + STRAIGHT_POINTS, local)?;
         let (count, ep) = (local.fitted, tolerance.ep);
@@ -275,7 +322,7 @@ impl SingularityModel for CurveThroughSheet {
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
-        let fit = Fit::new(local, &self.tolerance)?;
+        let fit = Fit::of(local, &self.tolerance)?;
         if let Some(side) = (0..2).find(|&side| fit.arcs[side] < LEAST_ARC) {
             return Err(Rejection::EmptyStratum {
                 stratum: 1 + side,
@@ -300,7 +347,7 @@ impl SingularityModel for CurveOnSheet {
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
-        let fit = Fit::new(local, &self.tolerance)?;
+        let fit = Fit::of(local, &self.tolerance)?;
         if fit.arcs[0].max(fit.arcs[1]) < LEAST_ARC {
             return Err(Rejection::EmptyStratum {
                 stratum: 1,

@@ -29,6 +29,10 @@ const LEAST_SHEET_SHARE: f64 = 0.06;
 const LEAST_DETERMINANT: f64 = 0.1;
 /// The crossing lies within this share of the radius.
 const REACH: f64 = 0.9;
+/// Least variance of the points in the fourth of the principal directions, as a share of the squared radius.
+/// The smallest second sheet that is accepted, with 6 % of the points at the least angle and the greatest distance, has
+/// three times as much off the first one; two sheets in a space of three dimensions, which cross in curves, have none.
+const LEAST_FOURTH: f64 = 1e-5;
 /// Rounds of fitting sheets and assigning points anew.
 const ROUNDS: usize = 3;
 
@@ -88,6 +92,11 @@ impl SingularityModel for IsolatedCrossing {
         at_least(3 * PATCH_POINTS, local)?;
         let count = local.fitted;
         let ep = self.tolerance.ep;
+        // The mean is the origin.
+        let fourth: f64 = (0..count).map(|k| local.point(k)[3].powi(2)).sum();
+        if fourth < LEAST_FOURTH * local.radius.powi(2) * count as f64 {
+            return Err(Rejection::NoRealSolution);
+        }
         let all: Vec<Vector4<f64>> = vectors(local);
         let points = &all[..count];
         let quadrics =

@@ -15,8 +15,11 @@ pub(super) struct Vanishing<const D: usize> {
     scale: f64,
 }
 
+/// Highest degree.
+const MOST_DEGREE: usize = 3;
+
 impl<const D: usize> Vanishing<D> {
-    /// The `count` best polynomials of degree at most `degree`; `scale` is a length typical of the
+    /// The `count` best polynomials of degree at most `degree`, which is at most 3; `scale` is a length typical of the
     /// points (conditioning only). `None` for fewer points than monomials.
     ///
     /// O(k m^2 + m^3) for k points and m monomials.
@@ -34,8 +37,9 @@ impl<const D: usize> Vanishing<D> {
         let mut normal = DMatrix::<f64>::zeros(m, m);
         let mut row = vec![0.0; m];
         for x in points {
+            let powers = powers(x, scale);
             for (value, exponent) in row.iter_mut().zip(&exponents) {
-                *value = power(x, exponent, scale);
+                *value = product(&powers, exponent);
             }
             for a in 0..m {
                 for b in 0..=a {
@@ -72,6 +76,7 @@ impl<const D: usize> Vanishing<D> {
     /// Gradients of the polynomials at `x`, in their order, per unit of the scale.
     pub(super) fn gradients(&self, x: &SVector<f64, D>, out: &mut Vec<SVector<f64, D>>) {
         out.clear();
+        let powers = powers(x, self.scale);
         for polynomial in self.coefficients.chunks_exact(self.exponents.len()) {
             let mut gradient = SVector::<f64, D>::zeros();
             for (c, exponent) in polynomial.iter().zip(&self.exponents) {
@@ -79,8 +84,7 @@ impl<const D: usize> Vanishing<D> {
                     if exponent[axis] > 0 {
                         let mut lower = *exponent;
                         lower[axis] -= 1;
-                        gradient[axis] +=
-                            c * f64::from(exponent[axis]) * power(x, &lower, self.scale);
+                        gradient[axis] += c * f64::from(exponent[axis]) * product(&powers, &lower);
                     }
                 }
             }
@@ -89,10 +93,17 @@ impl<const D: usize> Vanishing<D> {
     }
 }
 
-fn power<const D: usize>(x: &SVector<f64, D>, exponent: &[u8; D], scale: f64) -> f64 {
-    (0..D)
-        .map(|axis| (x[axis] / scale).powi(i32::from(exponent[axis])))
-        .product()
+/// Powers 0 to 3 of every coordinate, in units of `scale`: all that monomials of degree 3 need.
+fn powers<const D: usize>(x: &SVector<f64, D>, scale: f64) -> [[f64; MOST_DEGREE + 1]; D] {
+    std::array::from_fn(|axis| {
+        let x = x[axis] / scale;
+        [1.0, x, x * x, x * (x * x)]
+    })
+}
+
+fn product<const D: usize>(powers: &[[f64; MOST_DEGREE + 1]; D], exponent: &[u8; D]) -> f64 {
+    let factors = powers.iter().zip(exponent);
+    factors.map(|(p, &e)| p[usize::from(e)]).product()
 }
 
 /// Exponents of all monomials of at most the given degree.

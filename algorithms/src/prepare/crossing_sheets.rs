@@ -1,0 +1,112 @@
+//! Two sheets that cross, laid through a noisy neighborhood.
+
+use crate::balls::Near;
+use crate::principal::PrincipalFrame;
+use crate::singularity::{PlanePair, QuadraticPatch};
+use crosscap_core::PointCloud;
+use nalgebra::Vector3;
+
+/// Rounds of fitting both sheets and sharing the points out anew.
+const ROUNDS: usize = 4;
+/// Scatter that two sheets leave of that of one: cutting the noise of a single sheet in two
+/// leaves 0.6 of it.
+const GAIN: f64 = 0.55;
+/// Least share of the points on either sheet.
+const LEAST_SHARE: f64 = 0.12;
+/// Least sine of the angle at which the planes cross.
+const LEAST_SINE: f64 = 0.25;
+
+/// Two quadratic patches in the three leading principal coordinates of a neighborhood.
+pub(super) struct CrossingSheets {
+    frame: PrincipalFrame,
+    patches: [QuadraticPatch; 2],
+}
+
+/// Which patch is nearer, and how far.
+fn nearer(patches: &[QuadraticPatch; 2], x: &Vector3<f64>) -> (usize, f64) {
+    let d = [0, 1].map(|k| patches[k].signed_distance(x).abs());
+    let k = usize::from(d[1] < d[0]);
+    (k, d[k])
+}
+
+impl CrossingSheets {
+    /// Two sheets through the neighbors of a row, where they leave less scatter than `limit` (unit of the
+    /// data) and than half of what one sheet leaves.
+    pub(super) fn through(
+        cloud: &PointCloud<f64>,
+        row: usize,
+        near: &[Near],
+        limit: f64,
+    ) -> Option<Self> {
+        let mut near = near.to_vec();
+        near.sort_unstable();
+        let rows = || std::iter::once(row).chain(near.iter().map(|x| x.index() as usize));
+        let frame = PrincipalFrame::of(cloud, rows());
+        if frame.rank() < 3 {
+            return None;
+        }
+        let radius = near.last()?.square().sqrt();
+        let mut local = Vec::with_capacity(3);
+        let points: Vec<Vector3<f64>> = rows()
+            .map(|i| {
+                local.clear();
+                frame.project(cloud.point(i), 3, &mut local);
+                Vector3::from_column_slice(&local)
+            })
+            .collect();
+        let mut single =
+            QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
+        single.fit(points.iter().copied(), radius);
+        let alone: f64 = points
+            .iter()
+            .map(|x| single.signed_distance(x).powi(2))
+            .sum();
+        let pair = PlanePair::direct(points.iter().copied(), radius).ok()?;
+        let along = pair.normals[0].cross(&pair.normals[1]);
+        if along.norm() < LEAST_SINE {
+            return None;
+        }
+        let along = along.normalize();
+        let mut patches = [0, 1].map(|k| {
+            let normal = pair.normals[k];
+            let origin = normal * -pair.offsets[k];
+            QuadraticPatch::plane(origin, [along, normal.cross(&along), normal])
+        });
+        let mut owners = vec![0; points.len()];
+        let mut sum = 0.0;
+        for _ in 0..ROUNDS {
+            sum = 0.0;
+            for (owner, x) in owners.iter_mut().zip(&points) {
+                let (k, d) = nearer(&patches, x);
+                *owner = k;
+                sum += d * d;
+            }
+            for (k, patch) in patches.iter_mut().enumerate() {
+                let own = points.iter().zip(&owners).filter(|x| *x.1 == k);
+                if !patch.fit(own.map(|x| *x.0), radius) {
+                    return None;
+                }
+            }
+        }
+        let second: usize = owners.iter().sum();
+        let share = second as f64 / points.len() as f64;
+        let even = (LEAST_SHARE..=1.0 - LEAST_SHARE).contains(&share);
+        let scatter = (sum / points.len() as f64).sqrt();
+        (even && sum <= GAIN * GAIN * alone && scatter <= limit).then_some(Self { frame, patches })
+    }
+
+    /// `x` moved onto the nearer sheet.
+    pub(super) fn projected(&self, x: &[f64]) -> Vec<f64> {
+        let mut local = Vec::with_capacity(3);
+        self.frame.project(x, 3, &mut local);
+        let mut place = Vector3::from_column_slice(&local);
+        let patch = &self.patches[nearer(&self.patches, &place).0];
+        let start = place;
+        for _ in 0..2 {
+            let (height, gradient) = patch.height(&place);
+            place -= gradient * (height / gradient.norm_squared());
+        }
+        let shift = self.frame.lift_vector((place - start).as_slice());
+        x.iter().zip(&shift).map(|(x, s)| x + s).collect()
+    }
+}
