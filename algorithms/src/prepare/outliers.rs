@@ -13,20 +13,22 @@ const NEIGHBORS: usize = 24;
 /// and an outlier is as far off as it lies from the sheet.
 const CENTRAL: f64 = 0.8;
 /// Distance from the sheet that counts: less is an edge or a tip, or harmless.
-const LEAST_DISTANCE: f64 = 0.85;
+const LEAST_DISTANCE: f64 = 1.0;
 /// The same in units of the noise, of the neighbors and usual in the cloud. A fit is known to no more than
 /// twice the noise at its rim, so that this is four standard deviations there and eight in the middle.
 const LEAST_DEVIATIONS: f64 = 8.0;
 /// A neighbor with a larger spacing of its own is not on a surface as dense as the densest near it. On
 /// straight boundaries it is 1.4 times as large.
-const SPARSE: f64 = 2.5;
+const SPARSE: f64 = 2.0;
 /// A neighbor that is off the sheet by this share of the limit may be on another stratum.
 const OFF: f64 = 0.5;
-/// So many points of a surface off the sheet are another one, when they are as near as the radius.
+/// So many points of a surface off the sheet are another one, when they are as near to the point as the radius.
 const STRATUM: usize = 3;
-const STRATUM_RADIUS: f64 = 2.5;
-/// Two points of a surface are another one when they are nearer to the point than the sheet.
-const CLOSE_STRATUM: usize = 2;
+const STRATUM_RADIUS: f64 = 3.0;
+/// Two are enough for a point nearer to the sheet than this: beside a crossing a second sheet has few points, and
+/// an outlier there is hardly one.
+const BESIDE: f64 = 1.75;
+const STRATUM_BESIDE: usize = 2;
 /// The point and the three nearest off the sheet, or the two that there are, are a curve when they are in
 /// line: cosine of 18 degrees. Three are by chance once in 400 times.
 const ON_CURVE: usize = 3;
@@ -49,7 +51,7 @@ const MOST: f64 = 0.12;
 ///
 /// A sheet (quadratic, weighted so that points off it do not bend it) is laid through those of the 24 nearest of
 /// a point that lie as densely as a surface, without the point. It is an outlier when it is farther from the sheet
-/// than 0.85 spacings of the surface and than eight times the noise, unless points near it are off the sheet with
+/// than a spacing of the surface and than eight times the noise, unless points near it are off the sheet with
 /// it: a second sheet, a crease, a boundary or a curve is no outlier. Points that are no farther from
 /// the middle of their neighbors than scattered points are not looked at.
 ///
@@ -264,14 +266,19 @@ impl Around {
             .filter(|x| *x.1 > OFF * limit)
             .map(|((x, dense), _)| (x, *dense))
             .collect();
-        let within = |radius: f64| {
-            let near = |x: &&(&[f64], bool)| x.1 && squared_distance(x.0, own) < radius * radius;
-            off.iter().filter(near).count()
+        let beside = distance < BESIDE * unit;
+        let (radius, needed) = if beside {
+            (f64::INFINITY, STRATUM_BESIDE)
+        } else {
+            (STRATUM_RADIUS * unit, STRATUM)
         };
+        let dense = (off.iter())
+            .filter(|x| x.1 && squared_distance(x.0, own) < radius * radius)
+            .count();
         let nearest = &off[..off.len().min(ON_CURVE)];
         let line = nearest.len() >= 2
             && (nearest.windows(2)).all(|pair| in_line(own, pair[0].0, pair[1].0));
-        line || within(STRATUM_RADIUS * unit) >= STRATUM || within(distance) >= CLOSE_STRATUM
+        line || dense >= needed
     }
 }
 

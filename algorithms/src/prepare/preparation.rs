@@ -218,7 +218,11 @@ mod tests {
         for name in ["torus", "two_spheres", "annulus"] {
             let cloud = sample(name, 0.0);
             let found = Preparation::of(&cloud, Remedies::ALL, &Serial).unwrap();
-            assert_eq!(found.points(&cloud), cloud, "{name}");
+            assert!(
+                found.points(&cloud) == cloud,
+                "{name}: {:?}",
+                found.summary()
+            );
             assert_eq!(found.summary().to_string(), "");
         }
     }
@@ -236,7 +240,7 @@ mod tests {
         assert!(said.contains("moved onto fits"), "{said}");
         let only = Preparation::of(&cloud, Remedies::NONE, &Serial).unwrap();
         assert_eq!(only.outliers.rows, [3000]);
-        assert_eq!(only.points(&cloud), cloud);
+        assert!(only.points(&cloud) == cloud);
         assert!(!only.summary().outliers_left_out);
     }
 }
