@@ -63,7 +63,7 @@ impl Noise {
             let values = readings.iter().filter_map(|r| r[size].map(|x| x[which]));
             median(values.collect())
         };
-        for size in 0..sizes {
+        for (size, &neighbors) in SIZES.iter().enumerate().take(sizes) {
             let (Some(scatter), Some(extent)) = (usual(size, 0), usual(size, 1)) else {
                 continue;
             };
@@ -75,8 +75,8 @@ impl Noise {
             return Some(Self {
                 deviation: square.max(0.0).sqrt(),
                 // The mean square of the distances from the middle of a disc is half of its radius squared.
-                spacing: (2.0 * PI * extent / SIZES[size] as f64).sqrt(),
-                neighbors: SIZES[size],
+                spacing: (2.0 * PI * extent / neighbors as f64).sqrt(),
+                neighbors,
             });
         }
         None

@@ -70,7 +70,7 @@ impl Resolution {
 }
 
 /// The step of the values of one coordinate, where there is one.
-fn step_of(values: &mut Vec<f64>) -> Option<f64> {
+fn step_of(values: &mut [f64]) -> Option<f64> {
     let count = values.len();
     values.sort_unstable_by(f64::total_cmp);
     let range = values.last()? - values.first()?;
