@@ -3,9 +3,10 @@
 use crosscap::prelude::*;
 use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
-use crosscap_algorithms::singularity::TwoPlanes;
+use crosscap_algorithms::singularity::{TriplePoint, TwoPlanes};
 use crosscap_algorithms::surfaces::Random;
 use crosscap_backends::files::Distances;
+use crosscap_core::{Decomposition, LocalPoints, Rejection};
 use std::f64::consts::TAU;
 
 /// `count` distances a point, by a function of two points.
@@ -111,6 +112,49 @@ fn plug_ins_that_do_what_the_default_does_change_nothing() {
         assert_eq!(outcome.report.models, default.report.models);
         assert_eq!(outcome.report.mean_neighbors, default.report.mean_neighbors);
     }
+}
+
+/// A model that asks for everything and explains nothing.
+struct Nothing;
+
+impl SingularityModel for Nothing {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+    fn applies_to(&self, _dimension: usize) -> bool {
+        true
+    }
+    fn decompose(&self, _local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        Err(Rejection::NoRealSolution)
+    }
+    fn name(&self) -> &str {
+        "nothing"
+    }
+}
+
+#[test]
+fn neither_the_order_of_models_nor_those_that_refuse_change_anything() {
+    let surface = SampleSurface::find("three_spheres").unwrap();
+    let cloud = surface.sample(&Sampling::new(9000, 3)).unwrap().points;
+    let p = Parameters::new(0.45, 0.22);
+    let planes = || Box::new(TwoPlanes::new(p.dp, p.ep).unwrap()) as Box<dyn SingularityModel>;
+    let triple = || Box::new(TriplePoint::new(p.dp, p.ep).unwrap()) as Box<dyn SingularityModel>;
+    let run = |models: Vec<Box<dyn SingularityModel>>| {
+        let pipeline = Pipeline::new(p.clone()).unwrap().models(models);
+        { pipeline }.reconstruct(&cloud).unwrap()
+    };
+    let one = run(vec![planes(), triple()]);
+    let two = run(vec![Box::new(Nothing), triple(), planes()]);
+    assert!(one.report.models.iter().all(|m| m.won > 0));
+    assert_eq!(two.mesh, one.mesh);
+    let [nothing, triple, planes] = &two.report.models[..] else {
+        panic!("{:?}", two.report.models);
+    };
+    assert!(nothing.asked > 0 && nothing.no_real_solution == nothing.asked);
+    assert_eq!(
+        [planes, triple],
+        [&one.report.models[0], &one.report.models[1]]
+    );
 }
 
 #[test]

@@ -102,6 +102,13 @@ pub trait SingularityModel: Sync {
         false
     }
 
+    /// Whether rows behind those that are fitted change the answer, and not their own labels alone: a model
+    /// that counts the few points of a curve counts all of them. A model that says no is spared rows
+    /// whose labels nobody asks for.
+    fn looks_behind(&self) -> bool {
+        false
+    }
+
     /// Fits the model.
     ///
     /// # Errors

@@ -5,17 +5,17 @@ use super::progress::Progress;
 use super::rows::Rows;
 use super::{Method, Outcome, Parameters, Parts, Pipeline, Report, Stage};
 use crate::spaces::{Engines, MetricName, Neighborhoods, custom, positions};
-use crate::watched::Watched;
+use crate::watched::{Distortion, Watched};
 use crosscap_algorithms::certificate::{
     Certificate, CertificateOptions, Verdict, certify, certify_by_distances,
 };
 use crosscap_algorithms::dimension::PrincipalComponents;
-use crosscap_algorithms::homology::homology;
+use crosscap_algorithms::homology::{Homology, homology};
 use crosscap_algorithms::moments::{LocalDimension, MomentTree};
 use crosscap_algorithms::neighborhood::{
     FlatRadius, NearestCount, NeighborhoodPolicy, PolicyOracle, Surroundings,
 };
-use crosscap_algorithms::pieces::pieces;
+use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::{
     Analysis, AnalysisOptions, Analyzer, ChartSpace, Cut, Dimensions, Published, Refinement,
@@ -47,6 +47,14 @@ struct Triangulated {
     triangulation: Triangulation,
     /// Landmarks that were added.
     added: usize,
+}
+
+/// A mesh and what is known of it.
+struct Judged {
+    mesh: Mesh,
+    homology: Homology,
+    pieces: Result<Pieces, PiecesError>,
+    certificate: Certificate,
 }
 
 impl Pipeline {
@@ -94,54 +102,33 @@ impl Pipeline {
         let producer = parts.producer(&ground, &analyzer, &analysis, published.as_ref())?;
         let made = parts.triangulate(&ground, producer.as_ref(), &watched, &mut progress)?;
 
-        progress.enter(Stage::Homology);
         let places = producer.strata().places().unwrap_or(input.cloud);
-        let complex = &made.triangulation.complex;
-        let mesh = mesh_of(complex, &made.waist, places, &ground.rows.kept)?;
-        let betti = homology(&mesh.complex)?;
-        let parts_of_it = pieces(&mesh);
-
-        progress.enter(Stage::Certificate);
-        let certificate = parts.certify(&ground, &mesh, &made);
+        let judged = parts.judge(&ground, places, &made, &mut progress)?;
         // A star that stayed open in its own chart may be complete all the same; whether it is, the
         // certificate has seen edge by edge and link by link.
-        let complete = published.is_none() && matches!(certificate.verdict(), Verdict::Verified);
-        let failures = if complete {
+        let verified = matches!(judged.certificate.verdict(), Verdict::Verified);
+        let failures = if published.is_none() && verified {
             Vec::new()
         } else {
             failures(&made.triangulation, &made.waist, &ground.rows.kept)
         };
-        let dimension = ground.rows.cloud.dimension();
+        let estimator = (!parts.parameters.surface).then(|| estimator.name().to_string());
         Ok(Outcome {
             failures,
-            homology: betti,
-            certificate,
-            pieces: parts_of_it,
+            homology: judged.homology,
+            certificate: judged.certificate,
+            pieces: judged.pieces,
             report: Report {
-                version: env!("CARGO_PKG_VERSION"),
+                estimator,
                 points: input.cloud.len(),
-                dimension,
-                duplicates: ground.rows.duplicates,
-                estimator: (!parts.parameters.surface).then(|| estimator.name().to_string()),
-                mean_neighbors: analysis.mean_neighbors(),
-                candidates: analysis.candidates(),
-                curve_points: analysis.curve_points(),
-                unexplained: analysis.unexplained().len(),
-                models: analysis.models().to_vec(),
-                landmarks: made.waist.counts,
-                added_landmarks: made.added,
-                triangulation: made.triangulation.counts,
                 chart_distortion: watched.distortion(),
-                graph: ground.engines.graph().cloned(),
-                given: None,
                 warnings,
-                tuning: parts.tuning.clone(),
                 seconds: progress.finish(),
-                parameters: parts.parameters.clone(),
+                ..parts.report(&ground, &analysis, &made)
             },
             mesh: Mesh {
-                vertices: positions(&mesh.vertices, dimension)?,
-                ..mesh
+                vertices: positions(&judged.mesh.vertices, ground.rows.cloud.dimension())?,
+                ..judged.mesh
             },
         })
     }
@@ -324,6 +311,54 @@ impl Parts {
             extra.extend(added);
             round += 1;
             progress.enter(Stage::Landmarks);
+        }
+    }
+
+    /// The mesh of a triangulation, its homology and pieces, and the verdict.
+    fn judge(
+        &self,
+        ground: &Ground<'_>,
+        places: &PointCloud<f64>,
+        made: &Triangulated,
+        progress: &mut Progress<'_>,
+    ) -> Result<Judged, Error> {
+        progress.enter(Stage::Homology);
+        let complex = &made.triangulation.complex;
+        let mesh = mesh_of(complex, &made.waist, places, &ground.rows.kept)?;
+        let homology = homology(&mesh.complex)?;
+        let pieces = pieces(&mesh);
+        progress.enter(Stage::Certificate);
+        Ok(Judged {
+            certificate: self.certify(ground, &mesh, made),
+            mesh,
+            homology,
+            pieces,
+        })
+    }
+
+    /// What the stages counted.
+    fn report(&self, ground: &Ground<'_>, analysis: &Analysis, made: &Triangulated) -> Report {
+        Report {
+            version: env!("CARGO_PKG_VERSION"),
+            points: ground.rows.cloud.len(),
+            dimension: ground.rows.cloud.dimension(),
+            duplicates: ground.rows.duplicates,
+            estimator: None,
+            mean_neighbors: analysis.mean_neighbors(),
+            candidates: analysis.candidates(),
+            curve_points: analysis.curve_points(),
+            unexplained: analysis.unexplained().len(),
+            models: analysis.models().to_vec(),
+            landmarks: made.waist.counts,
+            added_landmarks: made.added,
+            triangulation: made.triangulation.counts,
+            chart_distortion: Distortion::default(),
+            graph: ground.engines.graph().cloned(),
+            given: None,
+            warnings: Vec::new(),
+            tuning: self.tuning.clone(),
+            seconds: Vec::new(),
+            parameters: self.parameters.clone(),
         }
     }
 

@@ -321,6 +321,10 @@ impl SingularityModel for CurveThroughSheet {
         (1..=3).contains(&dimension)
     }
 
+    fn looks_behind(&self) -> bool {
+        true
+    }
+
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
         let fit = Fit::of(local, &self.tolerance)?;
         if let Some(side) = (0..2).find(|&side| fit.arcs[side] < LEAST_ARC) {
@@ -344,6 +348,10 @@ impl SingularityModel for CurveOnSheet {
 
     fn applies_to(&self, dimension: usize) -> bool {
         (1..=3).contains(&dimension)
+    }
+
+    fn looks_behind(&self) -> bool {
+        true
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {

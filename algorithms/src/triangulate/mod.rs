@@ -1,9 +1,12 @@
 //! From the waist to the complex: an advancing front of stars.
 
 mod front;
+mod parts;
+mod repair;
 mod rule;
 mod rules;
+mod run;
 mod star;
-pub use front::{Incomplete, Triangulation, TriangulationCounts, Triangulator};
+pub use parts::{Incomplete, Triangulation, TriangulationCounts, Triangulator};
 pub use rule::{LargestAngle, MinimumCircumradius};
 pub use rules::Rules;

@@ -26,12 +26,12 @@ impl<S: Scalar> Fitter<'_, S> {
     /// Asks all models that take part about a ball; the fit with the least score wins. Among equal
     /// scores the first name does, so that the order of the models changes nothing.
     ///
-    /// `about` are positions of rows that the winner will be asked about.
+    /// The winner will be asked about the `added` rows behind those of the ball.
     pub(super) fn compete(
         &self,
         i: usize,
         view: &View,
-        about: &[usize],
+        added: usize,
         rules: &Rules<'_>,
         scratch: &mut Scratch<S>,
     ) -> Option<Contender> {
@@ -40,7 +40,7 @@ impl<S: Scalar> Fitter<'_, S> {
             if !(rules.takes_part)(model.as_ref()) {
                 continue;
             }
-            let Some(fitted) = self.ask(i, view, about, m, scratch) else {
+            let Some(fitted) = self.ask(i, view, added, m, scratch) else {
                 continue;
             };
             if !(rules.explains)(&fitted.fit) {
@@ -72,7 +72,7 @@ impl<S: Scalar> Fitter<'_, S> {
         &self,
         i: usize,
         view: &View,
-        about: &[usize],
+        added: usize,
         m: usize,
         scratch: &mut Scratch<S>,
     ) -> Option<Contender> {
@@ -80,8 +80,9 @@ impl<S: Scalar> Fitter<'_, S> {
         let local = self.local(view, model, scratch);
         self.ledger.asked(m);
         // One model alone need not be asked twice.
-        let found = if self.models.len() == 1 && !about.is_empty() {
-            let found = model.decompose_about(&local, about);
+        let found = if self.models.len() == 1 && added > 0 {
+            let about: Vec<usize> = view.added(model, added).collect();
+            let found = model.decompose_about(&local, &about);
             found.map(|(fit, located)| (fit, Some(located)))
         } else {
             model.decompose(&local).map(|fit| (fit, None))
@@ -105,31 +106,33 @@ impl<S: Scalar> Fitter<'_, S> {
         })
     }
 
-    /// What the winner says of the rows `about`.
+    /// What the winner says of the `added` rows behind those of the ball.
     pub(super) fn locate(
         &self,
         i: usize,
         view: &View,
-        about: &[usize],
+        added: usize,
         winner: &mut Contender,
         scratch: &mut Scratch<S>,
     ) -> Vec<Option<Located>> {
-        if about.is_empty() {
+        if added == 0 {
             return Vec::new();
         }
         let model = self.models[winner.model].as_ref();
         let local = self.local(view, model, scratch);
-        let known = winner.located.take().filter(|l| l.len() == about.len());
-        let located = known.unwrap_or_else(|| match model.decompose_about(&local, about) {
+        let known = winner.located.take().filter(|l| l.len() == added);
+        let about: Vec<usize> = view.added(model, added).collect();
+        let located = known.unwrap_or_else(|| match model.decompose_about(&local, &about) {
             Ok((_, located)) => located,
-            Err(_) => vec![None; about.len()],
+            Err(_) => vec![None; added],
         });
         audit::placed(located, &local, model, i, &self.faults)
     }
 }
 
-/// What models are compared by: the logarithm of the residual, penalized for parameters.
+/// What models are compared by: the logarithm of the residual of the points that were fitted, penalized for
+/// parameters (the Bayesian information criterion of normal errors, up to a constant).
 pub(super) fn score(fit: &Decomposition, view: &View) -> f64 {
-    let count = fit.labels.len().max(2) as f64;
+    let count = view.fitted.max(2) as f64;
     2.0 * count * (fit.residual / view.radius).max(1e-12).ln() + fit.parameters as f64 * count.ln()
 }

@@ -76,9 +76,10 @@ impl<S: Scalar> Fitter<'_, S> {
             dimension,
         };
         for shrunk in 0..=tuning.shrinks {
-            let Some(view) = self.view(i, radius, radius, scratch) else {
+            let Some(mut view) = self.view(i, radius, radius, scratch) else {
                 break;
             };
+            view.lean = true;
             if shrunk > 0 {
                 // A smaller ball of a crossing may pass for a sheet; models decide.
                 question.dimension = match self.dimension_of(i, &view) {
@@ -110,15 +111,10 @@ impl<S: Scalar> Fitter<'_, S> {
             dimension,
         } = *question;
         let tuning = &self.tuning.analysis;
-        if !self.knows_bare_curves() {
-            scratch.near.truncate(view.fitted);
-        }
-        let first = scratch.near.len();
         scratch.near.extend(others.iter().map(|&index| Neighbor {
             index,
             distance: S::zero(),
         }));
-        let rows: Vec<usize> = (first..scratch.near.len()).collect();
         let plain = match OneSheet.decompose(&self.local(view, &OneSheet, scratch)) {
             Ok(fit) => fit.residual,
             // A curve needs fewer points than a sheet, and is not compared with one.
@@ -136,12 +132,14 @@ impl<S: Scalar> Fitter<'_, S> {
         };
         let reach = (tuning.speaks_for * view.radius).powi(2);
         let close = |row: usize| self.space.square(i, row) < reach;
-        if let Some(mut best) = self.compete(i, view, &rows, &rules, scratch) {
-            let located = self.locate(i, view, &rows, &mut best, scratch);
-            let local = self.local(view, self.models[best.model].as_ref(), scratch);
+        if let Some(mut best) = self.compete(i, view, others.len(), &rules, scratch) {
+            let located = self.locate(i, view, others.len(), &mut best, scratch);
+            let model = self.models[best.model].as_ref();
+            let rows = view.added(model, others.len());
+            let local = self.local(view, model, scratch);
             let own = best.fit.located(view.center);
             let own = self.verdict(i, &best, view, local.point(view.center), own);
-            let kinds = (located.into_iter().zip(others).zip(&rows)).map(|((found, &row), &k)| {
+            let kinds = (located.into_iter().zip(others).zip(rows)).map(|((found, &row), k)| {
                 let found = found.filter(|_| close(row))?;
                 Some(self.verdict(row, &best, view, local.point(k), found))
             });

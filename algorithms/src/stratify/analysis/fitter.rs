@@ -8,6 +8,7 @@ use crate::principal::PrincipalFrame;
 use crate::space::Space;
 use crate::stratify::tuning::Tuning;
 use crosscap_core::{LocalPoints, Neighbor, PointCloud, Scalar, SingularityModel};
+use std::ops::Range;
 
 /// An [`Analyzer`] on a space that has coordinates. Everything that fits a model goes through it.
 pub(in crate::stratify) struct Fitter<'a, S: Scalar> {
@@ -49,6 +50,28 @@ pub(in crate::stratify) struct View {
     /// Points in the ball.
     pub(super) within: usize,
     pub(super) radius: f64,
+    /// Points that were found, those behind the fitted ones included; whoever adds rows adds them
+    /// behind these.
+    pub(super) found: usize,
+    /// Whether nobody needs the labels of the points behind the fitted ones.
+    pub(super) lean: bool,
+}
+
+impl View {
+    /// The points that a model does not get.
+    fn spared(&self, model: &dyn SingularityModel) -> Range<usize> {
+        if self.lean && !model.looks_behind() {
+            self.fitted..self.found
+        } else {
+            self.found..self.found
+        }
+    }
+
+    /// Positions, among the points that a model gets, of `count` rows that were added.
+    pub(super) fn added(&self, model: &dyn SingularityModel, count: usize) -> Range<usize> {
+        let first = self.found - self.spared(model).len();
+        first..first + count
+    }
 }
 
 impl<'a, S: Scalar> Fitter<'a, S> {
@@ -122,6 +145,8 @@ impl<'a, S: Scalar> Fitter<'a, S> {
             fitted,
             within,
             radius,
+            found: near.len(),
+            lean: false,
         })
     }
 
@@ -133,8 +158,12 @@ impl<'a, S: Scalar> Fitter<'a, S> {
         scratch: &'s mut Scratch<S>,
     ) -> LocalPoints<'s> {
         let dimension = model.local_dimension();
+        let spared = view.spared(model);
         scratch.local.clear();
-        for x in &scratch.near {
+        for x in scratch.near[..spared.start]
+            .iter()
+            .chain(&scratch.near[spared.end..])
+        {
             let place = self.cloud.point(x.index);
             view.frame.project(place, dimension, &mut scratch.local);
         }

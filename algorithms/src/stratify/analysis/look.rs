@@ -59,7 +59,7 @@ impl<S: Scalar> Fitter<'_, S> {
             },
             explains: &|_| true,
         };
-        let Some(best) = self.compete(i, &view, &[], &rules, scratch) else {
+        let Some(best) = self.compete(i, &view, 0, &rules, scratch) else {
             return self.bare_curve(i, &view, options, scratch);
         };
         let local = self.local(&view, self.models[best.model].as_ref(), scratch);

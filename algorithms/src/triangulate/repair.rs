@@ -1,0 +1,121 @@
+//! What happens when a star cannot be closed.
+
+use super::run::Run;
+use crosscap_core::{Error, Scalar};
+
+/// How many of the nearest members of a chart lose their triangles in a repair, one attempt after
+/// another.
+const TEARS: [usize; 6] = [0, 4, 8, 12, 18, 26];
+/// How many nearest neighbors are tried as the landmark to drop when tearing does not help.
+const DROPS: usize = 6;
+
+impl<S: Scalar> Run<'_, '_, S> {
+    /// Tries to close the star of `v` by repairs, with `drop` also by giving up a landmark.
+    /// `true` when one succeeded.
+    pub(super) fn mend(&mut self, v: u32, k: usize, drop: bool) -> Result<bool, Error> {
+        if !self.front.parts.repair || self.attempts == 0 {
+            return Ok(false);
+        }
+        let members: Vec<u32> = self.front.input.neighborhoods[k]
+            .members
+            .iter()
+            .copied()
+            .filter(|&m| !self.front.dropped[m as usize])
+            .collect();
+        for reach in TEARS {
+            if reach < members.len() + 4 && self.attempt(v, k, &members, reach, None)? {
+                return Ok(true);
+            }
+        }
+        if !drop {
+            return Ok(false);
+        }
+        let cell = |u: &u32| self.front.input.strata[*u as usize] == 2;
+        let droppable: Vec<u32> = members
+            .iter()
+            .copied()
+            .filter(cell)
+            .take(1 + DROPS)
+            .collect();
+        for u in droppable {
+            for reach in [0, 8] {
+                if self.attempt(v, k, &members, reach, Some(u))? {
+                    self.counts.dropped += 1;
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// One repair, all or nothing.
+    fn attempt(
+        &mut self,
+        v: u32,
+        k: usize,
+        members: &[u32],
+        reach: usize,
+        drop: Option<u32>,
+    ) -> Result<bool, Error> {
+        self.attempts = match self.attempts.checked_sub(1) {
+            Some(left) => left,
+            None => return Ok(false),
+        };
+        self.front.mark();
+        let order = self.tear(v, members, reach, drop);
+        let mut good = drop == Some(v) || self.visit(k)?;
+        for u in order {
+            if !good {
+                break;
+            }
+            let home = self.home[u as usize];
+            if self.done[u as usize] && home != usize::MAX && !self.front.dropped[u as usize] {
+                good = self.visit(home)?;
+            }
+        }
+        if good {
+            self.counts.repairs += 1;
+            // Landmarks that gained triangles and are not visited yet are on the front.
+            let reached = self.front.moved();
+            self.queue
+                .extend(reached.into_iter().filter(|&u| !self.done[u as usize]));
+        } else {
+            self.front.roll_back();
+            if let Some(u) = drop {
+                self.front.dropped[u as usize] = false;
+            }
+        }
+        Ok(good)
+    }
+
+    /// Removes the triangles at `v` and at its nearest members, and those of a landmark that is given up. Returns
+    /// the landmarks that lost one, but for `v`: members first, in their order.
+    fn tear(&mut self, v: u32, members: &[u32], reach: usize, drop: Option<u32>) -> Vec<u32> {
+        let mut touched = Vec::new();
+        // A landmark on a curve has triangles in other cells, which are none of this chart's business.
+        let mut sorted = members.to_vec();
+        sorted.sort_unstable();
+        let inside = |c: u32| sorted.binary_search(&c).is_ok();
+        let on_curve = self.front.input.strata[v as usize] < 2;
+        let within = |c: u32| !on_curve || inside(c);
+        self.front.clear(v, within, &mut touched);
+        for &m in members.iter().skip(1).take(reach) {
+            if self.front.input.strata[m as usize] == 2 {
+                self.front.clear(m, |_| true, &mut touched);
+            } else {
+                self.front.clear(m, inside, &mut touched);
+            }
+        }
+        if let Some(u) = drop {
+            self.front.clear(u, |_| true, &mut touched);
+            self.front.dropped[u as usize] = true;
+        }
+        let mut order: Vec<u32> = members.to_vec();
+        touched.sort_unstable();
+        touched.dedup();
+        order.retain(|m| touched.binary_search(m).is_ok() && *m != v);
+        let far = touched.into_iter().filter(|m| !members.contains(m));
+        order.extend(far);
+        order
+    }
+}

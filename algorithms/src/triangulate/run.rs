@@ -1,0 +1,232 @@
+//! The advancing front: which star is closed next.
+
+use super::front::Front;
+use super::parts::{Incomplete, Triangulation, TriangulationCounts, Triangulator};
+use super::star::Patch;
+use crate::audit::{AuditedChart, AuditedRule, AuditedTest, Watch, known_pairs};
+use crosscap_core::{Complex, CurveEdge, Error, Scalar, StratifiedLandmarks};
+use std::collections::VecDeque;
+use std::sync::atomic::AtomicU32;
+
+/// Repairs tried in all: a constant and a share of the landmarks. Data that no triangulation fits would
+/// otherwise be torn up star by star.
+const ATTEMPTS: usize = 400;
+const ATTEMPT_SHARE: usize = 4;
+/// Passes over the stars of curve landmarks: a repair of one may open another.
+const CURVE_PASSES: usize = 4;
+
+impl Triangulator<'_> {
+    /// Triangulates: every landmark of a cell is visited and its star closed, the front
+    /// advancing from neighbor to neighbor; then the stars of curve landmarks are completed, cell by cell.
+    ///
+    /// When a star cannot be closed, a repair removes the triangles around it, closes it first
+    /// and then every star that lost a triangle; wider and wider, and at last without the landmark or
+    /// one of its neighbors. A repair counts only as a whole: one that leaves any star open is
+    /// undone, so that a site that cannot be triangulated stays where it is.
+    ///
+    /// # Errors
+    /// Those of [`StratifiedLandmarks::check`] and of the chart; [`Error::Law`], whose point is the landmark, for a chart
+    /// of the wrong size or not finite, a test that is not symmetric, a rank that is NaN or depends on the
+    /// order of the ends, or a triangle without area that does not rank last.
+    ///
+    /// O(L k^2) for L landmarks with k members in a neighborhood, plus the charts.
+    pub fn triangulate<S: Scalar>(
+        &self,
+        input: &StratifiedLandmarks<S>,
+    ) -> Result<Triangulation, Error> {
+        input.check()?;
+        let first = input.neighborhoods.first().and_then(|near| {
+            let (&a, &b) = (near.members.first()?, near.members.get(1)?);
+            input.distances.get(a, b)
+        });
+        let size = first.map_or(1.0, Scalar::as_f64);
+        known_pairs(self.test, if size > 0.0 { size } else { 1.0 })?;
+        let watch = Watch::default();
+        let parts = &Triangulator {
+            chart: &AuditedChart {
+                chart: self.chart,
+                watch: &watch,
+            },
+            test: &AuditedTest {
+                test: self.test,
+                watch: &watch,
+                calls: AtomicU32::new(0),
+            },
+            rule: &AuditedRule {
+                rule: self.rule,
+                watch: &watch,
+                calls: AtomicU32::new(0),
+            },
+            ..*self
+        };
+        let mut front = Front::new(parts, input);
+        let mut run = Run::new(&watch, &mut front);
+        run.all()?;
+        let (counts, incomplete) = (run.counts, std::mem::take(&mut run.incomplete));
+        let count = input.strata.len();
+        let edges: Vec<CurveEdge> = input.curve_edges.clone();
+        Ok(Triangulation {
+            complex: Complex::new(count, front.standing(), edges)?,
+            dropped: (0..count as u32)
+                .filter(|&v| front.dropped[v as usize])
+                .collect(),
+            incomplete,
+            counts,
+        })
+    }
+}
+
+/// One triangulation under way.
+pub(super) struct Run<'r, 'a, S: Scalar> {
+    /// What the plug-ins did wrong.
+    watch: &'r Watch,
+    pub(super) front: &'r mut Front<'a, S>,
+    /// Neighborhood of each landmark of a cell.
+    pub(super) home: Vec<usize>,
+    /// Neighborhoods of each landmark on a curve, one a cell.
+    sectors: Vec<Vec<usize>>,
+    pub(super) done: Vec<bool>,
+    pub(super) queue: VecDeque<u32>,
+    kept: Vec<u32>,
+    pub(super) counts: TriangulationCounts,
+    incomplete: Vec<Incomplete>,
+    /// Repairs that may still be tried.
+    pub(super) attempts: usize,
+}
+
+impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
+    fn new(watch: &'r Watch, front: &'r mut Front<'a, S>) -> Self {
+        let input = front.input;
+        let count = input.strata.len();
+        let mut home = vec![usize::MAX; count];
+        let mut sectors: Vec<Vec<usize>> = vec![Vec::new(); count];
+        for (k, near) in input.neighborhoods.iter().enumerate() {
+            if input.strata[near.center as usize] == 2 {
+                home[near.center as usize] = k;
+            } else {
+                sectors[near.center as usize].push(k);
+            }
+        }
+        Self {
+            watch,
+            front,
+            home,
+            sectors,
+            done: vec![false; count],
+            queue: VecDeque::new(),
+            kept: Vec::new(),
+            counts: TriangulationCounts::default(),
+            incomplete: Vec::new(),
+            attempts: ATTEMPTS + count / ATTEMPT_SHARE,
+        }
+    }
+
+    fn all(&mut self) -> Result<(), Error> {
+        let Some(mut open) = self.advance_everywhere()? else {
+            return Ok(());
+        };
+        // Once more for those that stayed open, now that their surroundings are complete; a
+        // landmark is given up only then, since a hole can be closed only from all around.
+        for (v, k) in std::mem::take(&mut open) {
+            if !self.front.dropped[v as usize]
+                && !self.visit_or_undo(k)?
+                && !self.mend(v, k, true)?
+            {
+                open.push((v, k));
+            }
+        }
+        open.extend(self.close_curves()?);
+        self.incomplete = open
+            .into_iter()
+            .map(|(v, _)| Incomplete { landmark: v })
+            .collect();
+        self.incomplete.sort_unstable_by_key(|i| i.landmark);
+        self.incomplete.dedup();
+        Ok(())
+    }
+
+    /// Visits every landmark of a cell, and tells those whose stars stayed open with their neighborhoods;
+    /// `None` where the first of them ends everything.
+    fn advance_everywhere(&mut self) -> Result<Option<Vec<(u32, usize)>>, Error> {
+        let mut open = Vec::new();
+        for seed in 0..self.home.len() as u32 {
+            self.queue.push_back(seed);
+            while let Some(v) = self.queue.pop_front() {
+                let k = self.home[v as usize];
+                if self.done[v as usize] || self.front.dropped[v as usize] || k == usize::MAX {
+                    continue;
+                }
+                if !self.visit_or_undo(k)? && !self.mend(v, k, false)? {
+                    if !self.front.parts.repair {
+                        self.incomplete.push(Incomplete { landmark: v });
+                        return Ok(None);
+                    }
+                    open.push((v, k));
+                }
+                self.done[v as usize] = true;
+                self.advance(v);
+            }
+        }
+        Ok(Some(open))
+    }
+
+    /// Closes the stars of curve landmarks, which no visit of a cell has to close; those that stayed open.
+    fn close_curves(&mut self) -> Result<Vec<(u32, usize)>, Error> {
+        let mut open = Vec::new();
+        let passes = if self.front.parts.rules.curve_stars {
+            CURVE_PASSES
+        } else {
+            0
+        };
+        for _ in 0..passes {
+            open.clear();
+            let before = self.counts.repairs;
+            for v in 0..self.home.len() as u32 {
+                for k in self.sectors[v as usize].clone() {
+                    if !self.visit_or_undo(k)? && !self.mend(v, k, true)? {
+                        open.push((v, k));
+                    }
+                }
+            }
+            if self.counts.repairs == before {
+                break;
+            }
+        }
+        Ok(open)
+    }
+
+    /// Queues the neighbors of `v`.
+    fn advance(&mut self, v: u32) {
+        let mut next: Vec<u32> = self.front.incident[v as usize]
+            .iter()
+            .flat_map(|&t| self.front.triangles[t as usize])
+            .filter(|&u| !self.done[u as usize])
+            .collect();
+        next.sort_unstable();
+        next.dedup();
+        self.queue.extend(next);
+    }
+
+    /// Closes the star of a neighborhood's center; `false` when it stays open.
+    pub(super) fn visit(&mut self, k: usize) -> Result<bool, Error> {
+        self.counts.visits += 1;
+        let input = self.front.input;
+        let mut kept = std::mem::take(&mut self.kept);
+        self.watch.enter(input.neighborhoods[k].center);
+        let mut patch = Patch::new(self.front, &input.neighborhoods[k], &mut kept)?;
+        let closed = patch.close(self.front);
+        self.kept = kept;
+        self.watch.none()?;
+        Ok(closed)
+    }
+
+    /// The same, leaving no part of a star behind that stays open.
+    fn visit_or_undo(&mut self, k: usize) -> Result<bool, Error> {
+        self.front.mark();
+        let closed = self.visit(k)?;
+        if !closed {
+            self.front.roll_back();
+        }
+        Ok(closed)
+    }
+}
