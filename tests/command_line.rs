@@ -1489,7 +1489,6 @@ fn a_comparison_that_makes_no_sense_is_refused() {
     room.write("odd.json", "{\"runs\": []}");
     for (arguments, complaint) in [
         ("p.npy --dl 0.2", "--output"),
-        ("p.npy -o t.csv", "--dl is missing"),
         (
             "p.npy -o t.png --dl 0.2",
             "expected one of .html, .svg, .csv, .json",

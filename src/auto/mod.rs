@@ -8,16 +8,19 @@ mod density;
 mod input;
 mod moves;
 mod pinned;
+mod prepared;
 mod rounding;
 mod search;
 mod symptoms;
+#[cfg(test)]
+mod tests;
 
 pub use attempt::{Attempt, End, Topology};
 pub use density::Density;
 pub use input::Input;
 pub use moves::Move;
 pub use pinned::Pinned;
-pub use search::{Doubt, Search};
+pub use search::{Choice, Doubt, Search};
 
 use crate::pipeline::{Parameters, Pipeline};
 use crosscap_backends::files::Distances;

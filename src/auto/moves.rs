@@ -13,7 +13,8 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Move {
-    /// Larger neighborhoods, and landmarks farther apart.
+    /// Larger neighborhoods, landmarks as they were: no move makes the mesh coarser, as a coarser mesh passes
+    /// by seeing less.
     Larger,
     /// Smaller neighborhoods, and landmarks nearer to each other.
     Smaller,
@@ -37,7 +38,7 @@ pub enum Move {
 const GRAPH: usize = 20;
 /// Points that a neighborhood of its own size holds at least.
 const LOCAL: usize = 30;
-/// Factors on both lengths.
+/// Factors on eps, or on both lengths.
 const LARGER: f64 = 1.3;
 const SMALLER: f64 = 0.8;
 /// Factor on the separation alone.
@@ -73,7 +74,7 @@ impl Move {
         density: &Density,
     ) -> Option<Parameters> {
         match self {
-            Self::Larger => scaled(first, pinned, LARGER, LARGER),
+            Self::Larger => scaled(first, pinned, LARGER, 1.0),
             Self::Smaller => scaled(first, pinned, SMALLER, SMALLER),
             Self::Finer => scaled(first, pinned, 1.0, FINER),
             Self::Local if pinned.neighborhoods.is_none() && !first.surface => Some(Parameters {

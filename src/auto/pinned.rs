@@ -44,6 +44,9 @@ pub struct Pinned {
     pub lift: Option<f64>,
     /// [`Spaces::neighborhoods`].
     pub neighborhoods: Option<Neighborhoods>,
+    /// Whether outliers are left out, and points that scatter moved onto fits of their neighborhoods;
+    /// where nothing is said they are unless eps and dl are both given.
+    pub prepare: Option<bool>,
     /// [`Parameters::threads`].
     pub threads: Option<usize>,
 }
@@ -56,6 +59,11 @@ impl Pinned {
     /// defaults of [`Parameters::new`] for what is left out.
     pub fn complete(&self) -> Option<[f64; 2]> {
         Some([self.eps?, self.dl?])
+    }
+
+    /// Whether something may be done about outliers and noise.
+    pub(super) fn is_prepared(&self) -> bool {
+        self.prepare.unwrap_or(self.complete().is_none())
     }
 
     fn models(&self) -> Vec<ModelName> {

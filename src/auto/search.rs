@@ -9,8 +9,10 @@ use super::attempt::{Attempt, End, Topology};
 use super::density::Density;
 use super::input::Input;
 use super::moves::{Move, other_landmarks};
+use super::prepared::Prepared;
 use super::symptoms::Symptom;
 use crate::pipeline::{Outcome, Parameters, Pipeline};
+use crosscap_algorithms::prepare::PreparationSummary;
 use crosscap_core::Error;
 use std::fmt;
 use std::time::{Duration, Instant};
@@ -20,6 +22,8 @@ use std::time::{Duration, Instant};
 pub struct Search {
     /// How densely the points lie; none where all lengths were pinned.
     pub density: Option<Density>,
+    /// What was done about outliers and noise; none where nothing had to be done.
+    pub preparation: Option<PreparationSummary>,
     /// What was tried, in order.
     pub attempts: Vec<Attempt>,
     /// Which attempt counts: the verified one that is handed over, or else the one that came farthest.
@@ -61,13 +65,24 @@ impl Search {
     }
 }
 
+/// What is chosen from the points, before anything is tried.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// How densely the points lie; none where all lengths were pinned.
+    pub density: Option<Density>,
+    /// The parameters of the first attempt.
+    pub parameters: Parameters,
+    /// Why these, in a few words.
+    pub reason: String,
+}
+
 /// Other landmarks in a row, where little is wrong.
 const AGAIN: usize = 2;
 
 /// A search that is under way.
 struct Progress<'a> {
     auto: &'a Auto,
-    input: Input<'a>,
+    prepared: Prepared<'a>,
     density: Option<Density>,
     attempts: Vec<Attempt>,
     /// The attempt that came farthest.
@@ -76,6 +91,36 @@ struct Progress<'a> {
 }
 
 impl Auto {
+    /// The parameters of the first attempt, without making it.
+    ///
+    /// ```
+    /// use crosscap::auto::Input;
+    /// use crosscap::prelude::*;
+    /// let sample = SampleSurface::find("sphere")?.sample(&Sampling::new(3000, 1))?;
+    /// let chosen = Parameters::auto().choose(Input::Points(&sample.points))?.parameters;
+    /// assert_eq!(chosen.dl, chosen.eps / 2.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for too few different points.
+    pub fn choose(&self, input: Input<'_>) -> Result<Choice, Error> {
+        let pinned = self.pinned();
+        let (density, [eps, dl], reason) = match pinned.complete() {
+            Some(lengths) => (None, lengths, "as given".into()),
+            None => {
+                let density = input.density()?;
+                let (lengths, reason) = pinned.lengths(&density);
+                (Some(density), lengths, reason)
+            }
+        };
+        Ok(Choice {
+            density,
+            parameters: pinned.parameters(eps, dl),
+            reason,
+        })
+    }
+
     /// The same from points or distances, each attempt by a pipeline that `make` puts together for
     /// its parameters: with other parts than the usual ones, or with observers.
     ///
@@ -86,23 +131,24 @@ impl Auto {
         input: Input<'_>,
         make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
     ) -> Result<Search, Error> {
-        let (density, [eps, dl], reason) = match self.pinned().complete() {
-            Some(lengths) => (None, lengths, "as given".into()),
-            None => {
-                let density = input.density()?;
-                let (lengths, reason) = self.pinned().lengths(&density);
-                (Some(density), lengths, reason)
-            }
+        let prepared = if self.pinned().is_prepared() {
+            Prepared::of(input, self.pinned().threads.unwrap_or(0))?
+        } else {
+            Prepared::unchanged(input)
         };
+        let Choice {
+            density,
+            parameters: first,
+            reason,
+        } = self.choose(prepared.input())?;
         let mut progress = Progress {
             auto: self,
-            input,
+            prepared,
             density,
             attempts: Vec::new(),
             best: None,
             began: Instant::now(),
         };
-        let first = self.pinned().parameters(eps, dl);
         let symptom = progress.attempt(first.clone(), reason, make)?;
         let doubt = match symptom {
             Some(symptom) => progress.further(&first, symptom, make)?,
@@ -121,9 +167,11 @@ impl Progress<'_> {
         make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
     ) -> Result<Option<Symptom>, Error> {
         let since = Instant::now();
-        let outcome = self.input.run(&mut make(parameters.clone())?);
+        let outcome = self.prepared.run(&parameters, make)?;
+        // What was chosen later may not suit the input; that is no fault of the input.
         if let Err(error) = &outcome
             && error.is_input()
+            && self.attempts.is_empty()
         {
             return Err(error.clone());
         }
@@ -223,6 +271,7 @@ impl Progress<'_> {
         };
         let (chosen, outcome) = self.best.ok_or_else(nothing)?;
         Ok(Search {
+            preparation: self.prepared.summary().cloned(),
             density: self.density,
             attempts: self.attempts,
             chosen,

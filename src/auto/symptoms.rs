@@ -61,18 +61,10 @@ impl Symptom {
         match self {
             Self::Sparse => &[Larger, Local, Closed, Ending],
             Self::Unexplained => &[Closed, Ending, Smaller, Local],
-            Self::Curves => &[Closed, Ending, Smaller, Local, Finer, Unfolded, Larger],
-            Self::Folds | Self::Open => &[Unfolded, Closed, Smaller, Ending, Local, Finer, Larger],
-            Self::Ends => &[Larger, Ending, Closed, Smaller, Unfolded],
-            Self::Cover => &[
-                OtherLandmarks,
-                Smaller,
-                Larger,
-                Closed,
-                Ending,
-                Unfolded,
-                Local,
-            ],
+            Self::Curves => &[Closed, Ending, Smaller, Local, Finer, Unfolded],
+            Self::Folds | Self::Open => &[Unfolded, Closed, Smaller, Ending, Local, Finer],
+            Self::Ends => &[Ending, Closed, Smaller, Unfolded],
+            Self::Cover => &[OtherLandmarks, Smaller, Closed, Ending, Unfolded, Local],
         }
     }
 }

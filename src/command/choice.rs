@@ -25,6 +25,9 @@ pub fn chosen(input: &str, pinned: &Pinned, search: &Search) -> Vec<String> {
         ),
         format!("chosen: {}, {models}", first.reason),
     ];
+    if let Some(preparation) = &search.preparation {
+        lines.extend(preparation.to_string().lines().map(String::from));
+    }
     if search.attempts.len() > 1 {
         lines.extend(search.attempts.iter().enumerate().map(tried));
     }
@@ -32,7 +35,7 @@ pub fn chosen(input: &str, pinned: &Pinned, search: &Search) -> Vec<String> {
         let parameters = &search.attempts[search.chosen].parameters;
         lines.push(format!(
             "the same again: {}",
-            repeat::command(pinned, parameters)
+            repeat::command(pinned, parameters, search.preparation.is_some())
         ));
     }
     lines

@@ -10,6 +10,7 @@ use super::points::PointArguments;
 use super::spaces::GraphArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
+use crosscap::auto::Input;
 use crosscap::comparison::{ComparedRun, Comparison, RunState, compare};
 use crosscap::{MetricName, Parameters};
 use crosscap_backends::files::{read_indices, write_bytes_whole};
@@ -70,7 +71,7 @@ pub struct Compare {
     #[arg(long, value_name = "E", value_parser = positive)]
     analysis_eps: Option<f64>,
 
-    /// Separation of the landmarks, unit of the data
+    /// Separation of the landmarks, unit of the data [default: chosen from the density of the points]
     #[arg(long, visible_alias = "landmark-separation", value_name = "L", value_parser = positive)]
     dl: Option<f64>,
 
@@ -207,9 +208,17 @@ impl Compare {
 
     /// The table of the runs.
     fn made(&self) -> Result<Table, Failure> {
-        let dl = self.dl.ok_or_else(|| {
-            Failure::usage("--dl is missing: the separation of the landmarks, a third to a half of eps is usual")
-        })?;
+        let cloud = self.choice.read(&self.points)?;
+        let points = cloud.to_f64();
+        let dl = match self.dl {
+            Some(dl) => dl,
+            None => {
+                Parameters::auto()
+                    .choose(Input::Points(&points))?
+                    .parameters
+                    .dl
+            }
+        };
         let radii = match &self.eps {
             Some(radii) => radii.0.clone(),
             None => steps(USUAL[0] * dl, USUAL[1] * dl, USUAL_STEPS),
@@ -243,11 +252,10 @@ impl Compare {
             ..Parameters::new(comparison.radii[0], dl)
         };
         base.spaces.check()?;
-        let cloud = self.choice.read(&self.points)?;
         let count = comparison.metrics.len() * comparison.radii.len();
         let progress = Progress::of(count as u64, "runs");
         let done = || progress.step();
-        let runs = compare(&cloud.to_f64(), &base, &comparison, &done)?;
+        let runs = compare(&points, &base, &comparison, &done)?;
         drop(progress);
         let mut table = Table {
             crosscap: env!("CARGO_PKG_VERSION").into(),

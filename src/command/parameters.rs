@@ -118,6 +118,11 @@ pub struct ParameterArguments {
     #[command(flatten)]
     pub spaces: SpaceArguments,
 
+    /// Leave outliers out and move points that scatter onto fits of their neighborhoods, where there are any: yes or no
+    /// [default: yes; no where --eps and --dl are both given]
+    #[arg(long, value_name = "YES|NO", value_parser = yes_or_no)]
+    pub prepare: Option<bool>,
+
     /// Number of threads, 0 for all processors; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
@@ -171,6 +176,7 @@ impl ParameterArguments {
             graph: self.spaces.graph.rule(),
             lift: self.spaces.graph.lift,
             neighborhoods: self.spaces.neighborhoods,
+            prepare: self.prepare,
             threads: threads(self.threads),
         })
     }
@@ -192,6 +198,14 @@ fn models(text: &str) -> Result<Models, String> {
         }
     }
     Ok(Models(names))
+}
+
+fn yes_or_no(text: &str) -> Result<bool, String> {
+    match text {
+        "yes" => Ok(true),
+        "no" => Ok(false),
+        _ => Err("expected yes or no".into()),
+    }
 }
 
 /// 0 stands for all processors.

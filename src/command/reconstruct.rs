@@ -133,7 +133,7 @@ impl Reconstruct {
         if !lines.is_empty() {
             say(lines.join("\n"))?;
         }
-        let told = json!({ "density": search.density, "attempts": search.attempts, "doubt": search.doubt });
+        let told = json!({ "density": search.density, "preparation": search.preparation, "attempts": search.attempts, "doubt": search.doubt });
         match search.into_verified(input.places()) {
             Ok(outcome) => self.write(&input, &outcome, true, &told),
             Err(refusal) => self.refuse(&input, &pinned, *refusal, &told),

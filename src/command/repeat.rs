@@ -6,12 +6,16 @@ use crosscap_backends::geodesic::EdgeRule;
 use std::ffi::OsString;
 
 /// The command of this process with the parameters that it chose.
-pub fn command(pinned: &Pinned, chosen: &Parameters) -> String {
+///
+/// `prepared` says whether something was done about outliers and noise.
+pub fn command(pinned: &Pinned, chosen: &Parameters, prepared: bool) -> String {
     // Another program may stand before the command, an interpreter say.
     let own = std::env::args_os()
         .skip_while(|word| word != "reconstruct")
         .map(quoted);
-    let all = own.chain(flags(pinned, chosen));
+    let prepare = prepared && pinned.prepare.is_none();
+    let more = prepare.then(|| "--prepare yes".to_string());
+    let all = own.chain(flags(pinned, chosen)).chain(more);
     all.fold("crosscap".into(), |line, word| line + " " + &word)
 }
 

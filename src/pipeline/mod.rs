@@ -14,6 +14,7 @@ pub(crate) use rows::{distinct_points, distinct_rows};
 pub(crate) use run::Input;
 
 use crate::spaces::{Custom, Warning};
+use crosscap_algorithms::certificate::Limits;
 use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::predicate::PlanarPredicate;
@@ -52,6 +53,7 @@ pub struct Pipeline {
 struct Parts {
     parameters: Parameters,
     tuning: Tuning,
+    limits: Limits,
     models: Vec<Box<dyn SingularityModel>>,
     estimator: Option<Box<dyn DimensionEstimator<Scalar = f64>>>,
     selector: Box<dyn LandmarkSelector<Scalar = f64>>,
@@ -88,6 +90,7 @@ impl Pipeline {
             chart_metric: None,
             interrupt: Interrupt::default(),
             tuning: Tuning::MEASURED,
+            limits: Limits::default(),
             parameters,
         };
         Ok(Self {
@@ -100,6 +103,12 @@ impl Pipeline {
     /// Singularity models that compete instead of those that the parameters name.
     pub fn models(mut self, models: Vec<Box<dyn SingularityModel>>) -> Self {
         self.parts.models = models;
+        self
+    }
+
+    /// Other thresholds of the certificate.
+    pub fn limits(mut self, limits: Limits) -> Self {
+        self.parts.limits = limits;
         self
     }
 

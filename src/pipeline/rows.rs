@@ -1,5 +1,6 @@
 //! Which rows of the input are worked on: copies of a place say nothing.
 
+use crosscap_algorithms::certificate::{Certificate, Place, ViolationKind};
 use crosscap_core::{Error, PointCloud};
 
 /// The rows of the input that are worked on.
@@ -59,6 +60,20 @@ impl Rows {
     /// Numbers in the input of some of the kept rows.
     pub(super) fn in_input(&self, rows: &[usize]) -> Vec<usize> {
         rows.iter().map(|&r| self.kept[r]).collect()
+    }
+
+    /// The certificate with rows of the input for the points that it has seen.
+    pub(super) fn named(&self, mut certificate: Certificate) -> Certificate {
+        let cover = certificate.cover.iter_mut();
+        let violations = cover.flat_map(|report| &mut report.violations);
+        // Landmarks that are unused were named by the row from the start.
+        let seen = violations.filter(|v| v.kind != ViolationKind::UnusedLandmarks);
+        for place in seen.flat_map(|violation| &mut violation.places) {
+            if let Place::Point(row) = place {
+                *row = self.kept.get(*row).copied().unwrap_or(*row);
+            }
+        }
+        certificate
     }
 }
 

@@ -374,10 +374,11 @@ impl Parts {
             special_points: &special,
             closed: self.parameters.boundary.is_empty()
                 && !self.models.iter().any(|m| m.finds_boundary()),
+            limits: self.limits.clone(),
             ..CertificateOptions::default()
         };
         match &ground.given {
-            None => certify(mesh, &options),
+            None => ground.rows.named(certify(mesh, &options)),
             Some(space) => certify_by_distances(mesh, space.metric(), space.oracle(), &options),
         }
     }

@@ -3,7 +3,7 @@
 use super::places::{Trouble, troubles};
 use super::surroundings::{Look, Surroundings};
 use crate::auto::Doubt;
-use crate::pipeline::{Outcome, distinct_rows};
+use crate::pipeline::Outcome;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::{Error, PointCloud};
 use serde::Serialize;
@@ -89,9 +89,7 @@ pub(super) fn faults(
     }
     // Points too large for the tree were refused before.
     let oracle = points.and_then(|points| EuclideanOracle::new(points.clone()).ok());
-    // The certificate has seen one point for every place.
-    let kept = points.map(distinct_rows);
-    for trouble in troubles(outcome, kept.as_deref()) {
+    for trouble in troubles(outcome) {
         let found = judged(&trouble, oracle.as_ref());
         match faults.iter_mut().find(|fault| fault.kind == found.kind) {
             None => faults.push(found),

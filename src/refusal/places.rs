@@ -25,8 +25,7 @@ pub(super) struct Trouble {
 const STARS: usize = 60;
 
 /// Everything that failed.
-/// `kept` are the rows of the input that the certificate has seen, where those are not all.
-pub(super) fn troubles(outcome: &Result<Outcome, Error>, kept: Option<&[usize]>) -> Vec<Trouble> {
+pub(super) fn troubles(outcome: &Result<Outcome, Error>) -> Vec<Trouble> {
     match outcome {
         Err(error) => vec![of_error(error)],
         Ok(outcome) => {
@@ -37,7 +36,7 @@ pub(super) fn troubles(outcome: &Result<Outcome, Error>, kept: Option<&[usize]>)
                 first.count += outcome.failures.len().saturating_sub(STARS);
             }
             let violations = outcome.certificate.violations();
-            all.extend(violations.flat_map(|v| of_violation(v, &outcome.mesh, kept)));
+            all.extend(violations.flat_map(|v| of_violation(v, &outcome.mesh)));
             all
         }
     }
@@ -76,7 +75,6 @@ fn of_error(error: &Error) -> Trouble {
 fn of_violation<'a>(
     violation: &'a Violation,
     mesh: &'a Mesh,
-    kept: Option<&'a [usize]>,
 ) -> impl Iterator<Item = Trouble> + 'a {
     let kind = match violation.kind {
         ViolationKind::UncoveredPoints | ViolationKind::UnusedLandmarks => {
@@ -95,12 +93,7 @@ fn of_violation<'a>(
     let listed = violation.places.iter().map(|&place| Some(place));
     let all = listed.chain(whole).enumerate();
     all.map(move |(k, place)| Trouble {
-        row: place.and_then(|place| match (place, kept) {
-            (Place::Point(p), Some(kept)) if violation.kind != ViolationKind::UnusedLandmarks => {
-                kept.get(p).copied()
-            }
-            _ => row(place, mesh),
-        }),
+        row: place.and_then(|place| row(place, mesh)),
         coordinates: if k == 0 {
             violation.coordinates.clone()
         } else {
