@@ -3,7 +3,7 @@
 
 use crosscap::prelude::*;
 use crosscap_algorithms::pieces::Surface;
-use crosscap_algorithms::surfaces::{CurveKind, TrueCurve};
+use crosscap_algorithms::surfaces::TrueCurve;
 use crosscap_core::squared_distance;
 
 /// The paper's parameters; what the paper leaves out has its default.
@@ -201,11 +201,7 @@ fn distances_to_truth(surface: &SampleSurface, outcome: &Outcome) -> Largest {
 
 /// Largest distance of a point of a true curve to the mesh's curves of the same kind.
 fn curve_distance(curve: &TrueCurve, outcome: &Outcome) -> f64 {
-    let cells = match curve.kind {
-        CurveKind::Double => 4,
-        CurveKind::Junction => 3,
-        CurveKind::Boundary => 1,
-    };
+    let cells = curve.kind.cells();
     let mesh = &outcome.mesh;
     let edges = mesh.complex.curve_edges.iter().filter(|e| e.cells == cells);
     let segments: Vec<[&[f64]; 2]> = edges

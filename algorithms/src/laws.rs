@@ -134,7 +134,9 @@ mod tests {
         assert!(broken.found.contains('0'), "{broken}");
         let declared = SpecialPoint {
             vertex: 0,
-            link: LinkKind::IsolatedCrossing,
+            link: LinkKind::IsolatedCrossing
+                .link()
+                .expect("two circles have a name"),
         };
         put(&joined, &[declared]).unwrap();
         let broken = put(&tetrahedra(false, true), &[]).unwrap_err();

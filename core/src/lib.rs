@@ -11,6 +11,7 @@
 //! | who is near whom | [`NeighborhoodOracle`] |
 //! | how many dimensions | [`DimensionEstimator`] |
 //! | how a surface can be singular | [`SingularityModel`], [`Decomposition`] |
+//! | what a point looks like | [`Link`], [`LinkKind`] |
 //! | well-separated subset | [`LandmarkSelector`] |
 //! | local coordinates | [`LocalChart`] |
 //! | may two triangles stand side by side | [`CompatibilityTest`], [`TriangleRule`] |
@@ -27,6 +28,7 @@ mod error;
 mod landmarks;
 #[cfg(any(test, feature = "laws"))]
 pub mod laws;
+mod link;
 mod metric;
 mod neighborhood;
 mod scalar;
@@ -42,6 +44,7 @@ pub use dimension::{DimensionEstimate, DimensionEstimator};
 pub use distances::SparseDistances;
 pub use error::Error;
 pub use landmarks::LandmarkSelector;
+pub use link::{Link, LinkKind};
 pub use metric::MetricSpace;
 pub use neighborhood::{Neighbor, Neighborhood, NeighborhoodOracle};
 pub use scalar::Scalar;

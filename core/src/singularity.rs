@@ -1,6 +1,6 @@
 //! Models of how a surface can be singular.
 
-use crate::{Decomposition, Located};
+use crate::{Decomposition, Link, Located};
 
 /// A neighborhood in its own principal coordinates, as a singularity model sees it.
 ///
@@ -107,6 +107,12 @@ pub trait SingularityModel: Sync {
     /// whose labels nobody asks for.
     fn looks_behind(&self) -> bool {
         false
+    }
+
+    /// The link of the 0-strata of the model, where it has any and knows what they look like: the
+    /// vertex of the mesh that stands for such a point must have it.
+    fn link(&self) -> Option<Link> {
+        None
     }
 
     /// Fits the model.

@@ -1,6 +1,6 @@
 //! From landmarks back to rows of the input: the mesh, its special points, what failed.
 
-use crosscap_algorithms::certificate::{LinkKind, SpecialPoint};
+use crosscap_algorithms::certificate::SpecialPoint;
 use crosscap_algorithms::stratify::Stratification;
 use crosscap_algorithms::triangulate::Triangulation;
 use crosscap_core::{Complex, CurveEdge, Error, Mesh, PointCloud};
@@ -49,23 +49,18 @@ pub(super) fn mesh_of(
     )
 }
 
-/// The vertices at points in which sheets meet and nothing else, with the link they must have.
+/// The vertices at points whose link the model knows.
 pub(super) fn special_points(
     mesh: &Mesh,
     stratification: &Stratification<f64>,
     rows: &[usize],
 ) -> Vec<SpecialPoint> {
-    stratification
-        .points
-        .iter()
-        .filter(|p| (p.curves, p.cells) == (0, 2))
+    (stratification.points.iter())
         .filter_map(|p| {
+            let link = p.link.clone()?;
             let row = rows[stratification.rows[p.landmark as usize]] as i64;
-            let vertex = mesh.point_index.iter().position(|&r| r == row)?;
-            Some(SpecialPoint {
-                vertex: vertex as u32,
-                link: LinkKind::IsolatedCrossing,
-            })
+            let vertex = mesh.point_index.iter().position(|&r| r == row)? as u32;
+            Some(SpecialPoint { vertex, link })
         })
         .collect()
 }

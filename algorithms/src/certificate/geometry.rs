@@ -7,7 +7,7 @@ use super::incidence::Incidence;
 use super::stacked::Planes;
 use super::tree::{Bounds, Tree};
 use super::{Limits, Place, SpecialPoint, Violation, ViolationKind, exceeds};
-use crosscap_core::Mesh;
+use crosscap_core::{LinkKind, Mesh};
 use serde::Serialize;
 
 /// Folds, overlaps and crossings.
@@ -119,7 +119,8 @@ pub(super) fn check(
     let apart = limits.stacked_offset * large;
     let budget = PAIRS_PER_TRIANGLE * count + 100_000;
     let mut is_special = vec![false; mesh.complex.vertices];
-    for s in special {
+    let unlike_a_curve = |s: &&SpecialPoint| !LinkKind::GENERIC.contains(&s.link.kind());
+    for s in special.iter().filter(unlike_a_curve) {
         if let Some(flag) = is_special.get_mut(s.vertex as usize) {
             *flag = true;
         }

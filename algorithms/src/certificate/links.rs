@@ -7,76 +7,17 @@
 
 use super::incidence::Incidence;
 use super::{Place, Violation, ViolationKind};
-use crosscap_core::Mesh;
+use crosscap_core::{Link, LinkKind, Mesh};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What the surface looks like around a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum LinkKind {
-    /// A circle: an interior point.
-    Circle,
-    /// An arc: a boundary point.
-    Arc,
-    /// Two nodes of degree 4 joined by four arcs: a point of a double curve.
-    Double,
-    /// One node of degree 4 with four leaves: a double curve ends where two boundaries cross.
-    DoubleEnd,
-    /// Six nodes of degree 4, an octahedron: three sheets cross in a point.
-    Triple,
-    /// Two nodes of degree 3 joined by three arcs: a point of a Y-junction.
-    Junction,
-    /// One node of degree 3 with three leaves: a Y-junction ends on three boundaries.
-    JunctionEnd,
-    /// One node of degree 3, a loop and a leaf: a sheet that stands on another one ends.
-    SideSheetEnd,
-    /// Four nodes of degree 3, each joined to each: four Y-junctions meet, as in soap films.
-    QuadrupleJunction,
-    /// One node of degree 4 with two loops, a figure eight: a double curve ends in a pinch point.
-    Pinch,
-    /// Two circles: two sheets meet in this point alone.
-    IsolatedCrossing,
-    /// A circle and two points: a curve goes through a sheet.
-    CurveThroughSheet,
-    /// A circle and one point: a curve ends on a sheet.
-    CurveOnSheet,
-    /// Two points: a curve that no surface touches.
-    Curve,
-    /// One point: the end of a curve that no surface touches.
-    CurveEnd,
-    /// Any other connected link.
-    Other,
-    /// Any other disconnected link.
-    Split,
-}
-
-impl LinkKind {
-    /// Kinds that need no declaration beyond the marks of the edges.
-    pub const GENERIC: [Self; 12] = [
-        Self::Circle,
-        Self::Arc,
-        Self::Double,
-        Self::DoubleEnd,
-        Self::Triple,
-        Self::Junction,
-        Self::JunctionEnd,
-        Self::QuadrupleJunction,
-        Self::CurveThroughSheet,
-        Self::CurveOnSheet,
-        Self::Curve,
-        Self::CurveEnd,
-    ];
-}
-
 /// A vertex that is declared to be a special point, a stratum of dimension 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct SpecialPoint {
     /// The vertex.
     pub vertex: u32,
-    /// What its link must be; declares kinds outside [`LinkKind::GENERIC`] as well.
-    pub link: LinkKind,
+    /// What its link must be; declares links of kinds outside [`LinkKind::GENERIC`] as well.
+    pub link: Link,
 }
 
 /// Vertices by the kind of their link.
@@ -88,19 +29,20 @@ pub struct LinkReport {
     pub violations: Vec<Violation>,
 }
 
-/// Work space for one link.
+/// How many different links a violation describes.
+const MOST_LISTED: usize = 3;
+
+/// Work space for the graph of one vertex.
 #[derive(Default)]
-struct Link {
+struct Around {
     nodes: Vec<u32>,
-    edges: Vec<(u32, u32)>,
-    starts: Vec<u32>,
-    ends: Vec<u32>,
+    edges: Vec<[u32; 2]>,
+    degrees: Vec<u8>,
     component: Vec<u32>,
-    stack: Vec<u32>,
 }
 
-impl Link {
-    /// Reads the link of `vertex`; `lone` are the neighbors along curve edges.
+impl Around {
+    /// Reads the graph about `vertex`; `along` are the neighbors along curve edges.
     fn read(&mut self, mesh: &Mesh, triangles: &[u32], vertex: u32, along: &[u32]) {
         self.nodes.clear();
         self.edges.clear();
@@ -108,7 +50,7 @@ impl Link {
             let corners = mesh.complex.triangles[t as usize];
             let mut others = corners.iter().copied().filter(|&v| v != vertex);
             if let (Some(a), Some(b)) = (others.next(), others.next()) {
-                self.edges.push((a, b));
+                self.edges.push([a, b]);
                 self.nodes.extend([a, b]);
             }
         }
@@ -118,136 +60,83 @@ impl Link {
         let nodes = &self.nodes;
         for e in &mut self.edges {
             let find = |v: u32| nodes.partition_point(|&n| n < v) as u32;
-            *e = (find(e.0), find(e.1));
+            *e = e.map(find);
         }
-        self.starts.clear();
-        self.starts.resize(self.nodes.len() + 1, 0);
-        for &(a, b) in &self.edges {
-            self.starts[a as usize + 1] += 1;
-            self.starts[b as usize + 1] += 1;
-        }
-        for k in 0..self.nodes.len() {
-            self.starts[k + 1] += self.starts[k];
-        }
-        self.ends.clear();
-        self.ends.resize(2 * self.edges.len(), 0);
-        self.stack.clear();
-        self.stack.extend(&self.starts);
-        for (k, &(a, b)) in self.edges.iter().enumerate() {
-            for v in [a, b] {
-                self.ends[self.stack[v as usize] as usize] = k as u32;
-                self.stack[v as usize] += 1;
-            }
+        self.degrees.clear();
+        self.degrees.resize(self.nodes.len(), 0);
+        for &v in self.edges.iter().flatten() {
+            let degree = &mut self.degrees[v as usize];
+            *degree = degree.saturating_add(1);
         }
     }
 
-    fn at(&self, node: u32) -> &[u32] {
-        &self.ends[self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize]
+    /// The link that the graph is a subdivision of.
+    fn link(&self) -> Link {
+        Link::of_graph(self.nodes.len(), &self.edges, |_| false)
     }
 
-    fn degree(&self, node: u32) -> usize {
-        self.at(node).len()
-    }
-
+    /// The kind of the link. Nearly all vertices have a circle or an arc, which are told without
+    /// setting up the link.
     fn kind(&mut self) -> LinkKind {
+        let leaves = self.degrees.iter().filter(|&&d| d == 1).count();
+        let simple = self.degrees.iter().all(|&d| d == 1 || d == 2);
+        match leaves {
+            0 if simple && self.is_connected() => LinkKind::Circle,
+            2 if simple && self.is_connected() => LinkKind::Arc,
+            _ => self.link().kind(),
+        }
+    }
+
+    fn is_connected(&mut self) -> bool {
         let n = self.nodes.len();
         self.component.clear();
-        self.component.resize(n, u32::MAX);
-        let (mut circles, mut points, mut others) = (0, 0, 0);
-        let mut last = LinkKind::Other;
-        for start in 0..n as u32 {
-            if self.component[start as usize] != u32::MAX {
-                continue;
-            }
-            self.stack.clear();
-            self.stack.push(start);
-            self.component[start as usize] = start;
-            while let Some(a) = self.stack.pop() {
-                for k in self.starts[a as usize]..self.starts[a as usize + 1] {
-                    let (p, q) = self.edges[self.ends[k as usize] as usize];
-                    let b = if p == a { q } else { p };
-                    if self.component[b as usize] == u32::MAX {
-                        self.component[b as usize] = start;
-                        self.stack.push(b);
-                    }
-                }
-            }
-            match self.connected_kind(start) {
-                LinkKind::CurveEnd => points += 1,
-                LinkKind::Circle => circles += 1,
-                kind => {
-                    others += 1;
-                    last = kind;
-                }
+        self.component.extend(0..n as u32);
+        let mut parts = n;
+        for &[a, b] in &self.edges {
+            let [p, q] = [a, b].map(|v| root(&mut self.component, v));
+            if p != q {
+                self.component[p as usize] = q;
+                parts -= 1;
             }
         }
-        match (others, circles, points) {
-            (0, 1, 0) => LinkKind::Circle,
-            (1, 0, 0) => last,
-            (0, 2, 0) => LinkKind::IsolatedCrossing,
-            (0, 1, 2) => LinkKind::CurveThroughSheet,
-            (0, 1, 1) => LinkKind::CurveOnSheet,
-            (0, 0, 2) => LinkKind::Curve,
-            (0, 0, 1) => LinkKind::CurveEnd,
-            _ => LinkKind::Split,
-        }
+        parts == 1
     }
+}
 
-    /// Kind of the component that starts at a node; a single node is a [`LinkKind::CurveEnd`].
-    fn connected_kind(&self, start: u32) -> LinkKind {
-        let mut degrees = [0_usize; 6];
-        let members =
-            || (start..self.nodes.len() as u32).filter(|&v| self.component[v as usize] == start);
-        for v in members() {
-            degrees[self.degree(v).min(5)] += 1;
-        }
-        let branch = |d: usize| members().filter(move |&v| self.degree(v) == d);
-        match (degrees[0], degrees[1], degrees[3], degrees[4], degrees[5]) {
-            (1, 0, 0, 0, 0) => LinkKind::CurveEnd,
-            (0, 0, 0, 0, 0) => LinkKind::Circle,
-            (0, 2, 0, 0, 0) => LinkKind::Arc,
-            (0, 0, 0, 1, 0) => LinkKind::Pinch,
-            (0, 4, 0, 1, 0) => LinkKind::DoubleEnd,
-            (0, 3, 1, 0, 0) => LinkKind::JunctionEnd,
-            (0, 1, 1, 0, 0) => LinkKind::SideSheetEnd,
-            (0, 0, 0, 2, 0) if branch(4).all(|v| !self.has_loop(v)) => LinkKind::Double,
-            (0, 0, 2, 0, 0) if branch(3).all(|v| !self.has_loop(v)) => LinkKind::Junction,
-            // a simple graph with these degrees is the octahedron, or the complete one
-            (0, 0, 0, 6, 0) if branch(4).all(|v| self.is_simple_at(v)) => LinkKind::Triple,
-            (0, 0, 4, 0, 0) if branch(3).all(|v| self.is_simple_at(v)) => {
-                LinkKind::QuadrupleJunction
-            }
-            _ => LinkKind::Other,
-        }
+/// The name of the part that a node is in, with the way to it shortened.
+fn root(parent: &mut [u32], mut node: u32) -> u32 {
+    while parent[node as usize] != node {
+        parent[node as usize] = parent[parent[node as usize] as usize];
+        node = parent[node as usize];
     }
+    node
+}
 
-    /// Node at the other end of the arc that leaves `node` by `edge`.
-    fn arc_end(&self, node: u32, edge: u32) -> u32 {
-        let (mut at, mut by) = (node, edge);
-        // an arc visits every edge at most once
-        for _ in 0..=self.edges.len() {
-            let (p, q) = self.edges[by as usize];
-            at = if p == at { q } else { p };
-            if self.degree(at) != 2 {
-                break;
-            }
-            let next = self.at(at);
-            by = if next[0] == by { next[1] } else { next[0] };
-        }
-        at
+/// A link that no model explained, as it looks and what it would be.
+fn in_words(link: &Link) -> String {
+    match link.kind().meaning() {
+        Some(meaning) => format!("{link}: {meaning}, and no model claims it"),
+        None => format!("{link}: a point of no known kind"),
     }
+}
 
-    fn has_loop(&self, node: u32) -> bool {
-        self.at(node).iter().any(|&e| self.arc_end(node, e) == node)
-    }
-
-    fn is_simple_at(&self, node: u32) -> bool {
-        let ends = self.at(node);
-        (0..ends.len()).all(|i| {
-            let far = self.arc_end(node, ends[i]);
-            far != node && (0..i).all(|j| self.arc_end(node, ends[j]) != far)
+/// The most frequent descriptions, with their numbers.
+fn listed(found: &BTreeMap<String, usize>) -> String {
+    let mut all: Vec<(&String, &usize)> = found.iter().collect();
+    all.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+    let more = all.len().saturating_sub(MOST_LISTED);
+    let mut words: Vec<String> = all
+        .into_iter()
+        .take(MOST_LISTED)
+        .map(|(text, count)| match count {
+            1 => text.clone(),
+            _ => format!("{count} times {text}"),
         })
+        .collect();
+    if more > 0 {
+        words.push(format!("and {more} more kinds"));
     }
+    words.join("; ")
 }
 
 pub(super) fn check(
@@ -265,12 +154,13 @@ pub(super) fn check(
         .flat_map(|e| [(e.ends[0], e.ends[1]), (e.ends[1], e.ends[0])])
         .collect();
     along.sort_unstable();
-    let mut declared: Vec<(u32, LinkKind)> = special.iter().map(|s| (s.vertex, s.link)).collect();
+    let mut declared: Vec<(u32, &Link)> = special.iter().map(|s| (s.vertex, &s.link)).collect();
     declared.sort_unstable();
     let mut report = LinkReport::default();
     let (mut bad, mut split, mut pinched, mut undone) = (vec![], vec![], vec![], vec![]);
-    let mut bad_kinds: BTreeMap<LinkKind, usize> = BTreeMap::new();
-    let mut link = Link::default();
+    let mut unexplained: BTreeMap<String, usize> = BTreeMap::new();
+    let mut otherwise: BTreeMap<String, usize> = BTreeMap::new();
+    let mut around = Around::default();
     let (mut neighbors, mut next, mut next_declared) = (Vec::new(), 0, 0);
     for v in 0..n as u32 {
         neighbors.clear();
@@ -290,44 +180,41 @@ pub(super) fn check(
             }
             continue;
         }
-        link.read(mesh, triangles, v, &neighbors);
-        let kind = link.kind();
+        around.read(mesh, triangles, v, &neighbors);
+        let kind = around.kind();
         *report.census.entry(kind).or_default() += 1;
         let place = Place::Vertex(v);
         if let Some(wanted) = wanted {
-            if wanted != kind {
+            let link = around.link();
+            if wanted.without_creases() != link {
+                *otherwise
+                    .entry(format!("{link} instead of {wanted}"))
+                    .or_default() += 1;
                 undone.push(place);
             }
         } else if !admissible.contains(&kind) {
+            *unexplained.entry(in_words(&around.link())).or_default() += 1;
             match kind {
                 LinkKind::Pinch => pinched.push(place),
                 LinkKind::Split | LinkKind::IsolatedCrossing => split.push(place),
-                _ => {
-                    *bad_kinds.entry(kind).or_default() += 1;
-                    bad.push(place);
-                }
+                _ => bad.push(place),
             }
         }
     }
     undone.extend(declared[next_declared..].iter().map(|d| Place::Vertex(d.0)));
     let at = |p: Place| super::coordinates(mesh, p);
-    let kinds = bad_kinds
-        .iter()
-        .map(|(k, c)| format!("{k:?} {c}"))
-        .collect::<Vec<_>>()
-        .join(", ");
-    report
-        .violations
-        .extend(Violation::at(ViolationKind::InadmissibleLink, bad, at).map(|v| v.detailed(kinds)));
-    report
-        .violations
-        .extend(Violation::at(ViolationKind::SplitLink, split, at));
-    report
-        .violations
-        .extend(Violation::at(ViolationKind::Pinch, pinched, at));
-    report
-        .violations
-        .extend(Violation::at(ViolationKind::SpecialPoint, undone, at));
+    let found = listed(&unexplained);
+    for (kind, places, detail) in [
+        (ViolationKind::InadmissibleLink, bad, &found),
+        (ViolationKind::SplitLink, split, &found),
+        (ViolationKind::Pinch, pinched, &found),
+        (ViolationKind::SpecialPoint, undone, &listed(&otherwise)),
+    ] {
+        let violation = Violation::at(kind, places, at);
+        report
+            .violations
+            .extend(violation.map(|v| v.detailed(detail.clone())));
+    }
     report
 }
 
@@ -351,9 +238,9 @@ mod tests {
         let incidence = Incidence::new(&complex);
         let cloud = PointCloud::new(1, vec![0.0; top + 1]).unwrap();
         let mesh = Mesh::new(complex, cloud, vec![-1; top + 1]).unwrap();
-        let mut link = Link::default();
-        link.read(&mesh, incidence.at_vertex(0), 0, bare);
-        link.kind()
+        let mut around = Around::default();
+        around.read(&mesh, incidence.at_vertex(0), 0, bare);
+        around.kind()
     }
 
     /// Edges of a graph with every edge cut into three.

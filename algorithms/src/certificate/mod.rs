@@ -36,10 +36,11 @@ mod tests;
 
 pub use by_distances::{DistanceReport, certify_by_distances};
 pub use cover::{CoverReport, Distances};
+pub use crosscap_core::{Link, LinkKind};
 pub use edges::EdgeReport;
 pub use geometry::GeometryReport;
 pub use indices::IndexReport;
-pub use links::{LinkKind, LinkReport, SpecialPoint};
+pub use links::{LinkReport, SpecialPoint};
 pub use quality::{Cell, QualityReport, Spread};
 pub use violation::{Level, Place, Verdict, Violation, ViolationKind};
 

@@ -515,7 +515,7 @@ fn bad_links() {
     assert_eq!(pair.kinds(), [ViolationKind::SplitLink]);
     let special = [SpecialPoint {
         vertex: 0,
-        link: LinkKind::IsolatedCrossing,
+        link: LinkKind::IsolatedCrossing.link().unwrap(),
     }];
     let options = CertificateOptions {
         special_points: &special,
@@ -525,7 +525,7 @@ fn bad_links() {
     assert!(c.verdict().is_verified(), "{c}");
     let special = [SpecialPoint {
         vertex: 1,
-        link: LinkKind::IsolatedCrossing,
+        link: LinkKind::IsolatedCrossing.link().unwrap(),
     }];
     let options = CertificateOptions {
         special_points: &special,
@@ -541,7 +541,7 @@ fn bad_links() {
     );
     let special = [SpecialPoint {
         vertex: 77,
-        link: LinkKind::Pinch,
+        link: LinkKind::Pinch.link().unwrap(),
     }];
     let options = CertificateOptions {
         special_points: &special,
@@ -587,7 +587,7 @@ fn pinch_point() {
     assert!(kinds.contains(&ViolationKind::Pinch), "{kinds:?}");
     let special = [SpecialPoint {
         vertex: 0,
-        link: LinkKind::Pinch,
+        link: LinkKind::Pinch.link().unwrap(),
     }];
     let options = CertificateOptions {
         special_points: &special,

@@ -6,7 +6,9 @@ use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::sheets::patch_over;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
-use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{
+    Decomposition, Error, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
+};
 use nalgebra::Vector3;
 use std::cell::RefCell;
 
@@ -325,6 +327,10 @@ impl SingularityModel for CurveThroughSheet {
         true
     }
 
+    fn link(&self) -> Option<Link> {
+        LinkKind::CurveThroughSheet.link()
+    }
+
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
         let fit = Fit::of(local, &self.tolerance)?;
         if let Some(side) = (0..2).find(|&side| fit.arcs[side] < LEAST_ARC) {
@@ -352,6 +358,10 @@ impl SingularityModel for CurveOnSheet {
 
     fn looks_behind(&self) -> bool {
         true
+    }
+
+    fn link(&self) -> Option<Link> {
+        LinkKind::CurveOnSheet.link()
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {

@@ -5,7 +5,9 @@ use super::patch::PATCH_POINTS;
 use super::sheet_in_four::SheetInFour;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
-use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{
+    Decomposition, Error, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
+};
 use nalgebra::{Matrix4, Vector4};
 
 /// Two sheets that cross in an isolated point, as two surfaces of R^4 do in general: the two
@@ -86,6 +88,10 @@ fn meet(sheets: &[SheetInFour; 2], start: Vector4<f64>, reach: f64) -> Option<Ve
 impl SingularityModel for IsolatedCrossing {
     fn local_dimension(&self) -> usize {
         4
+    }
+
+    fn link(&self) -> Option<Link> {
+        LinkKind::IsolatedCrossing.link()
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {

@@ -6,7 +6,8 @@ use super::sheets::Sheets;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crosscap_core::{
-    Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
+    Decomposition, Error, Link, LinkKind, LocalPoints, Located, Rejection, SingularityModel,
+    Stratum,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -59,6 +60,10 @@ impl TriplePoint {
 impl SingularityModel for TriplePoint {
     fn local_dimension(&self) -> usize {
         3
+    }
+
+    fn link(&self) -> Option<Link> {
+        LinkKind::Triple.link()
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {

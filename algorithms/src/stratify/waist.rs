@@ -8,7 +8,7 @@ use super::landmarks;
 use super::skeleton::Skeleton;
 use super::strata::Strata;
 use crate::space::Space;
-use crosscap_core::{Error, LandmarkSelector, Scalar, StratifiedLandmarks};
+use crosscap_core::{Error, LandmarkSelector, Link, Scalar, StratifiedLandmarks};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of the stratification.
@@ -55,7 +55,7 @@ pub struct StratifyCounts {
 }
 
 /// A landmark at a 0-stratum, with what meets there by the model that found it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PointStratum {
     /// The landmark.
     pub landmark: u32,
@@ -63,6 +63,8 @@ pub struct PointStratum {
     pub curves: usize,
     /// Number of cells that have it at their rim.
     pub cells: usize,
+    /// Its link, where the model knows it.
+    pub link: Option<Link>,
 }
 
 /// The waist, and what ties it to the points.
@@ -228,7 +230,7 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
                 neighborhoods,
                 distances,
             },
-            points: self.skeleton.points(),
+            points: (self.skeleton).points(&self.strata, self.analyzer.models),
             rows,
         })
     }

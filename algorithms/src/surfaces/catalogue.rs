@@ -5,10 +5,11 @@ use super::curves::{
     roman_segments, torus_sphere_circles, torus_through_torus, triple_points_of_three_spheres,
 };
 use super::sample::draw;
+use super::singular::singular_surfaces;
 use super::{
     BoySurface, CurveKind, Cylinder, Henneberg, KleinFigureEight, MoebiusStrip, PaperExample,
-    Piece, PieceTruth, ProjectivePlane, Rectangle, Ring, RomanSurface, Sample, Sampling,
-    SamplingLaw, Segment, SphereCap, SwissRoll, Torus, TrueCurve, Truth, TwoHoledTorus,
+    Piece, PieceTruth, PointKind, ProjectivePlane, Rectangle, Ring, RomanSurface, Sample, Sampling,
+    SamplingLaw, Segment, SphereCap, SwissRoll, Torus, TrueCurve, TruePoint, Truth, TwoHoledTorus,
 };
 use crosscap_core::{Error, PointCloud};
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
@@ -33,6 +34,8 @@ pub struct SampleSurface {
     rims_are_boundary: bool,
     singular: Option<Curves>,
     triple_points: Vec<Vec<f64>>,
+    points: Vec<TruePoint>,
+    boundary_arcs: Option<Curves>,
     truth: Truth,
     paper: Option<PaperExample>,
     defaults: Sampling,
@@ -106,9 +109,10 @@ impl SampleSurface {
         }
     }
 
-    /// Whether the surface ends anywhere.
+    /// Whether it ends in whole rims of its pieces, on which a sample can have points of its own. Where only
+    /// parts of rims are boundary (a plate that stands on another) it cannot.
     pub fn has_boundary(&self) -> bool {
-        self.truth.boundary_curves > 0
+        self.rims_are_boundary
     }
 
     /// Draws a sample. O(count) for the drawing, see [`super::thin`] for the thinning.
@@ -149,18 +153,21 @@ impl SampleSurface {
         Ok(nearest)
     }
 
-    /// Double and junction curves, each as `count` points exactly on it; `None` where no closed form is
+    /// Double curves, junctions of other numbers of cells and creases, each as `count` points exactly on it; `None` where no closed form is
     /// at hand (Boy's surface), empty where there are none.
     pub fn singular_curves(&self, count: usize) -> Option<Vec<TrueCurve>> {
         match &self.singular {
             Some(curves) => Some(curves(count)),
-            None if self.truth.double_curves + self.truth.junction_curves == 0 => Some(Vec::new()),
+            None if self.truth.curves() == 0 => Some(Vec::new()),
             None => None,
         }
     }
 
     /// Boundary curves, each as `count` points exactly on it, at equal steps of arc length.
     pub fn boundary_curves(&self, count: usize) -> Vec<TrueCurve> {
+        if let Some(arcs) = &self.boundary_arcs {
+            return arcs(count);
+        }
         if !self.rims_are_boundary {
             return Vec::new();
         }
@@ -175,7 +182,13 @@ impl SampleSurface {
         &self.triple_points
     }
 
-    fn new(
+    /// The other places at which the surface is like nowhere near: pinch points, ends of curves, corners,
+    /// apexes.
+    pub fn points(&self) -> &[TruePoint] {
+        &self.points
+    }
+
+    pub(super) fn new(
         name: &'static str,
         summary: &'static str,
         pieces: Vec<Box<dyn Piece>>,
@@ -190,6 +203,8 @@ impl SampleSurface {
             rims_are_boundary: truth.boundary_curves > 0,
             singular: None,
             triple_points: Vec::new(),
+            points: Vec::new(),
+            boundary_arcs: None,
             truth,
             paper: None,
             defaults: Sampling {
@@ -199,12 +214,12 @@ impl SampleSurface {
         }
     }
 
-    fn also(mut self, aliases: &'static [&'static str]) -> Self {
+    pub(super) fn also(mut self, aliases: &'static [&'static str]) -> Self {
         self.aliases = aliases;
         self
     }
 
-    fn singular(
+    pub(super) fn singular(
         mut self,
         curves: impl Fn(usize) -> Vec<TrueCurve> + Send + Sync + 'static,
     ) -> Self {
@@ -212,8 +227,30 @@ impl SampleSurface {
         self
     }
 
-    fn triple(mut self, points: Vec<Vec<f64>>) -> Self {
+    pub(super) fn triple(mut self, points: Vec<Vec<f64>>) -> Self {
         self.triple_points = points;
+        self
+    }
+
+    /// The places of one kind of point.
+    pub(super) fn at(
+        mut self,
+        kind: PointKind,
+        places: impl IntoIterator<Item = Vec<f64>>,
+    ) -> Self {
+        let points = places.into_iter().map(|place| TruePoint { kind, place });
+        self.points.extend(points);
+        self
+    }
+
+    /// Boundary curves, where they are not the rims of the pieces.
+    pub(super) fn bounded_by(
+        mut self,
+        curves: impl Fn(usize) -> Vec<TrueCurve> + Send + Sync + 'static,
+    ) -> Self {
+        self.rims_are_boundary = false;
+        self.defaults.boundary = false;
+        self.boundary_arcs = Some(Box::new(curves));
         self
     }
 
@@ -230,15 +267,15 @@ impl SampleSurface {
     }
 }
 
-const SPHERE: PieceTruth = kind("sphere", true, 2, 0);
+pub(super) const SPHERE: PieceTruth = kind("sphere", true, 2, 0);
 const TORUS: PieceTruth = kind("torus", true, 0, 0);
-const DISC: PieceTruth = kind("disc", true, 1, 1);
-const ANNULUS: PieceTruth = kind("annulus", true, 0, 2);
+pub(super) const DISC: PieceTruth = kind("disc", true, 1, 1);
+pub(super) const ANNULUS: PieceTruth = kind("annulus", true, 0, 2);
 const KLEIN: PieceTruth = kind("klein bottle", false, 0, 0);
 const GENUS_2: PieceTruth = kind("double torus", true, -2, 0);
 const MOEBIUS: PieceTruth = kind("moebius strip", false, 0, 1);
-const SEGMENT: PieceTruth = kind("segment", true, 1, 0);
-const PROJECTIVE: PieceTruth = kind("projective plane", false, 1, 0);
+pub(super) const SEGMENT: PieceTruth = kind("segment", true, 1, 0);
+pub(super) const PROJECTIVE: PieceTruth = kind("projective plane", false, 1, 0);
 
 const fn kind(name: &'static str, orientable: bool, euler: i64, boundaries: usize) -> PieceTruth {
     PieceTruth {
@@ -250,7 +287,11 @@ const fn kind(name: &'static str, orientable: bool, euler: i64, boundaries: usiz
 }
 
 /// Truth of a surface without torsion or singular strata.
-const fn plain(betti: [usize; 3], pieces: &'static [PieceTruth], boundary_curves: usize) -> Truth {
+pub(super) const fn plain(
+    betti: [usize; 3],
+    pieces: &'static [PieceTruth],
+    boundary_curves: usize,
+) -> Truth {
     Truth {
         betti,
         betti_mod_2: betti,
@@ -262,10 +303,16 @@ const fn plain(betti: [usize; 3], pieces: &'static [PieceTruth], boundary_curves
         triple_points: 0,
         isolated_crossings: 0,
         pinch_points: 0,
+        books: 0,
+        creases: 0,
     }
 }
 
-const fn crossing(betti: [usize; 3], pieces: &'static [PieceTruth], double_curves: usize) -> Truth {
+pub(super) const fn crossing(
+    betti: [usize; 3],
+    pieces: &'static [PieceTruth],
+    double_curves: usize,
+) -> Truth {
     Truth {
         double_curves,
         ..plain(betti, pieces, 0)
@@ -317,6 +364,7 @@ const fn manifold(
 pub fn catalogue() -> Vec<SampleSurface> {
     let mut all = paper_surfaces();
     all.extend(further_surfaces());
+    all.extend(singular_surfaces());
     all
 }
 
@@ -487,7 +535,7 @@ fn paper_surfaces() -> Vec<SampleSurface> {
 }
 
 /// Axis vectors `a` and `b` of R^`n`.
-fn axes(n: usize, a: usize, b: usize) -> [Vec<f64>; 2] {
+pub(super) fn axes(n: usize, a: usize, b: usize) -> [Vec<f64>; 2] {
     [a, b].map(|axis| (0..n).map(|k| if k == axis { 1.0 } else { 0.0 }).collect())
 }
 
@@ -642,6 +690,9 @@ fn further_surfaces() -> Vec<SampleSurface> {
         )
         .also(&["roman_surface", "steiner"])
         .triple(vec![vec![0.0; 3]])
+        .at(PointKind::Pinch, (0..6).map(|k| {
+            (0..3).map(|axis| if axis == k / 2 { k as f64 % 2.0 - 0.5 } else { 0.0 }).collect()
+        }))
         .singular(roman_segments),
     ]
 }

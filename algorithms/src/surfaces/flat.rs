@@ -1,8 +1,10 @@
 //! Pieces without curvature: rectangles, the Swiss roll, segments.
 
-use super::{Jet, Piece, RimSegment};
+use super::round::cross;
+use super::{Jet, Piece, Random, RimSegment};
+use std::f64::consts::PI;
 
-fn rectangle_rim([[a, b], [c, d]]: [[f64; 2]; 2]) -> Vec<RimSegment> {
+pub(super) fn rectangle_rim([[a, b], [c, d]]: [[f64; 2]; 2]) -> Vec<RimSegment> {
     let corners = [[a, c], [b, c], [b, d], [a, d]];
     (0..4)
         .map(|k| RimSegment {
@@ -70,6 +72,90 @@ impl Piece for Rectangle {
                 .for_each(|(r, s)| *r -= clamped * s);
         }
         Some(rest.iter().map(|r| r * r).sum::<f64>().sqrt())
+    }
+}
+
+/// Half of a flat disc of space, on one side of a diameter. Parameters: distance from the middle of the
+/// diameter, angle from it.
+#[derive(Clone, Debug)]
+pub struct HalfDisc {
+    name: &'static str,
+    radius: f64,
+    along: [f64; 3],
+    out: [f64; 3],
+}
+
+impl HalfDisc {
+    /// The half disc of `radius` about the origin with its diameter in the direction `along`, on the side
+    /// of `out`; both are unit vectors, at a right angle.
+    pub fn new(name: &'static str, radius: f64, along: [f64; 3], out: [f64; 3]) -> Self {
+        Self {
+            name,
+            radius,
+            along,
+            out,
+        }
+    }
+}
+
+impl Piece for HalfDisc {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+    fn ambient_dimension(&self) -> usize {
+        3
+    }
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[0.0, self.radius], [0.0, PI]]
+    }
+    fn ends(&self) -> [bool; 2] {
+        [true; 2]
+    }
+    fn map(&self, [distance, angle]: [Jet; 2], place: &mut [Jet]) {
+        let (s, c) = angle.sin_cos();
+        for (k, x) in place.iter_mut().enumerate() {
+            *x = distance * c * self.along[k] + distance * s * self.out[k];
+        }
+    }
+    fn area_element_bound(&self) -> f64 {
+        self.radius * (1.0 + 1e-12)
+    }
+    fn area(&self) -> f64 {
+        0.5 * PI * self.radius * self.radius
+    }
+    /// The squared distance from the middle is uniform.
+    fn propose(&self, random: &mut Random, place: &mut [Jet]) -> ([f64; 2], f64) {
+        let at = [
+            self.radius * random.uniform().sqrt(),
+            random.between(0.0, PI),
+        ];
+        self.map(at.map(Jet::constant), place);
+        (at, 1.0)
+    }
+    fn rims(&self) -> Vec<Vec<RimSegment>> {
+        let corners = [
+            [self.radius, 0.0],
+            [self.radius, PI],
+            [0.0, PI],
+            [self.radius, 0.0],
+        ];
+        let way = |from: [f64; 2], to: [f64; 2]| RimSegment { from, to };
+        vec![vec![
+            way(corners[0], corners[1]),
+            way(corners[1], corners[2]),
+            way([0.0, 0.0], corners[3]),
+        ]]
+    }
+    fn closed_form_distance(&self, place: &[f64]) -> Option<f64> {
+        let dot = |axis: [f64; 3]| (0..3).map(|k| axis[k] * place[k]).sum::<f64>();
+        let off = dot(cross(self.along, self.out));
+        let (x, y) = (dot(self.along), dot(self.out));
+        let within = if y > 0.0 {
+            (libm::hypot(x, y) - self.radius).max(0.0)
+        } else {
+            libm::hypot((x.abs() - self.radius).max(0.0), y)
+        };
+        Some(libm::hypot(off, within))
     }
 }
 

@@ -27,30 +27,33 @@ mod jet;
 mod motion;
 mod nearest;
 mod piece;
+mod pinched;
 mod projective;
 mod random;
 mod ring;
 mod round;
 mod sample;
+mod singular;
 mod strips;
 mod thin;
 mod truth;
 mod two_holed_torus;
 
 pub use catalogue::{SampleSurface, catalogue};
-pub use flat::{Rectangle, Segment, SwissRoll};
+pub use flat::{HalfDisc, Rectangle, Segment, SwissRoll};
 pub use henneberg::Henneberg;
 pub use jet::{Jet, area_element, first_fundamental_form};
 pub use motion::{RigidMotion, embed, scaled};
 pub use piece::{Drawn, Piece, RimSegment, SamplingLaw, place_at};
+pub use pinched::{CrossCap, Umbrella};
 pub use projective::{BoySurface, ProjectivePlane, RomanSurface};
 pub use random::Random;
 pub use ring::{RingConformations, RingError, RingGeometry, RingProjection, RingSample};
-pub use round::{Cylinder, Ring, SphereCap, Torus};
+pub use round::{Cone, Cylinder, Ring, SphereCap, Torus};
 pub use sample::{Sample, Sampling};
 pub use strips::{KleinFigureEight, MoebiusStrip};
 pub use thin::{thin, thin_randomly};
-pub use truth::{CurveKind, PaperExample, PieceTruth, TrueCurve, Truth};
+pub use truth::{CurveKind, PaperExample, PieceTruth, PointKind, TrueCurve, TruePoint, Truth};
 pub use two_holed_torus::TwoHoledTorus;
 
 #[cfg(test)]

@@ -4,13 +4,13 @@
 use super::{Jet, Piece, Random, area_element};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-fn on_sphere([polar, azimuth]: [Jet; 2]) -> [Jet; 3] {
+pub(super) fn on_sphere([polar, azimuth]: [Jet; 2]) -> [Jet; 3] {
     let ((sp, cp), (sa, ca)) = (polar.sin_cos(), azimuth.sin_cos());
     [sp * ca, sp * sa, cp]
 }
 
 /// Draws from a half sphere uniformly, and accepts by the element relative to the sphere's.
-fn propose_from_half_sphere<P: Piece>(
+pub(super) fn propose_from_half_sphere<P: Piece>(
     piece: &P,
     random: &mut Random,
     place: &mut [Jet],

@@ -339,3 +339,75 @@ impl Piece for Cylinder {
         ))
     }
 }
+
+/// The surface of a cone about the z axis, without its lid. Parameters: distance from the apex as a share of
+/// that of the rim, angle.
+#[derive(Clone, Debug)]
+pub struct Cone {
+    name: &'static str,
+    apex: f64,
+    base: f64,
+    radius: f64,
+}
+
+impl Cone {
+    /// The cone with its apex at height `apex` and a rim of `radius` at height `base`.
+    pub fn new(name: &'static str, apex: f64, base: f64, radius: f64) -> Self {
+        Self {
+            name,
+            apex,
+            base,
+            radius,
+        }
+    }
+
+    fn slant(&self) -> f64 {
+        libm::hypot(self.radius, self.base - self.apex)
+    }
+}
+
+impl Piece for Cone {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+    fn ambient_dimension(&self) -> usize {
+        3
+    }
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[0.0, 1.0], [0.0, TAU]]
+    }
+    fn ends(&self) -> [bool; 2] {
+        [true, false]
+    }
+    fn map(&self, [share, angle]: [Jet; 2], place: &mut [Jet]) {
+        let (s, c) = angle.sin_cos();
+        let across = share * self.radius;
+        let height = share * (self.base - self.apex) + self.apex;
+        place.copy_from_slice(&[across * c, across * s, height]);
+    }
+    fn area_element_bound(&self) -> f64 {
+        self.radius * self.slant() * (1.0 + 1e-12)
+    }
+    fn area(&self) -> f64 {
+        PI * self.radius * self.slant()
+    }
+    /// The squared distance from the apex is uniform.
+    fn propose(&self, random: &mut Random, place: &mut [Jet]) -> ([f64; 2], f64) {
+        let at = [random.uniform().sqrt(), random.between(0.0, TAU)];
+        self.map(at.map(Jet::constant), place);
+        (at, 1.0)
+    }
+    fn rims(&self) -> Vec<Vec<RimSegment>> {
+        vec![rim_at_first(1.0, [0.0, TAU])]
+    }
+    fn closed_form_distance(&self, place: &[f64]) -> Option<f64> {
+        let (across, height) = (libm::hypot(place[0], place[1]), place[2] - self.apex);
+        let rise = self.base - self.apex;
+        let share = (across * self.radius + height * rise) / self.slant().powi(2);
+        let share = share.clamp(0.0, 1.0);
+        Some(libm::hypot(
+            across - share * self.radius,
+            height - share * rise,
+        ))
+    }
+}

@@ -38,6 +38,17 @@ pub struct Truth {
     pub isolated_crossings: usize,
     /// Points where the surface is no immersion.
     pub pinch_points: usize,
+    /// Curves where five or more cells meet.
+    pub books: usize,
+    /// Curves along which a sheet bends sharply.
+    pub creases: usize,
+}
+
+impl Truth {
+    /// Number of curves that are no boundary.
+    pub(super) const fn curves(&self) -> usize {
+        self.double_curves + self.junction_curves + self.books + self.creases
+    }
 }
 
 /// Parameters of one of the paper's examples and what the paper printed for it (its sections 4 and 5).
@@ -85,6 +96,56 @@ pub enum CurveKind {
     Junction,
     /// The surface ends: one cell.
     Boundary,
+    /// A sheet bends sharply: two cells meet.
+    Crease,
+    /// Five or more cells meet.
+    Book {
+        /// Number of cells.
+        cells: u8,
+    },
+}
+
+impl CurveKind {
+    /// Number of cells that meet in the curve.
+    pub const fn cells(self) -> u8 {
+        match self {
+            Self::Boundary => 1,
+            Self::Crease => 2,
+            Self::Junction => 3,
+            Self::Double => 4,
+            Self::Book { cells } => cells,
+        }
+    }
+}
+
+/// What kind of point a true point is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointKind {
+    /// A double curve ends inside a sheet: the surface is no immersion there.
+    Pinch,
+    /// A curve of four or another number of cells ends where all its cells have a boundary.
+    CurveEnd,
+    /// The curve in which a sheet stands on another one ends inside that one.
+    SideSheetEnd,
+    /// Four curves of three cells each meet, and six cells.
+    QuadrupleJunction,
+    /// Three or more creases meet.
+    Corner,
+    /// A crease ends at the boundary.
+    CreaseEnd,
+    /// The tip of a cone: a sheet without a tangent plane.
+    Apex,
+    /// Two sheets, or a sheet and a curve, have this point alone in common.
+    Isolated,
+}
+
+/// A point of the true surface at which it is like nowhere near.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TruePoint {
+    /// Its kind.
+    pub kind: PointKind,
+    /// Its place.
+    pub place: Vec<f64>,
 }
 
 /// A curve of the true surface as a line of points on it.

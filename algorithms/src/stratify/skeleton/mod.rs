@@ -18,7 +18,7 @@ use super::site::StratumKind;
 use super::strata::Strata;
 use super::tuning::SkeletonTuning;
 use super::waist::PointStratum;
-use crosscap_core::{CurveEdge, Error, PointCloud, Scalar};
+use crosscap_core::{CurveEdge, Error, PointCloud, Scalar, SingularityModel};
 use thin::thin;
 
 /// Landmarks on points and curves, with the chains.
@@ -149,7 +149,11 @@ impl Skeleton {
     }
 
     /// The points that models call 0-strata.
-    pub(super) fn points(&self) -> Vec<PointStratum> {
+    pub(super) fn points(
+        &self,
+        strata: &Strata,
+        models: &[Box<dyn SingularityModel>],
+    ) -> Vec<PointStratum> {
         self.corner_fits()
             .filter(|r| r.has_points())
             .filter_map(|r| {
@@ -159,6 +163,8 @@ impl Skeleton {
                     landmark: landmark as u32,
                     curves: count(1),
                     cells: count(2),
+                    link: (strata.sites()[r.row].on()?.fit)
+                        .and_then(|used| models[usize::from(used.model)].link()),
                 })
             })
             .collect()
