@@ -3,7 +3,7 @@
 use super::inputs::clouds;
 use super::reference::Scan;
 use super::settings::ensure;
-use super::{Law, LawBroken, Settings};
+use super::{Failures, Findings, Law, Settings};
 use crate::{MetricSpace, Neighbor, NeighborhoodOracle, PointCloud, Scalar};
 use proptest::prelude::*;
 
@@ -63,7 +63,25 @@ static PLACES: Law = Law {
                scaled or centered for the tree and not for the query",
 };
 
-pub(super) static ALL: [&Law; 6] = [&BUFFER, &STRICTNESS, &ORDER, &TIES, &BRUTE_FORCE, &PLACES];
+/// Indices alone.
+static INDICES: Law = Law {
+    subject: SUBJECT,
+    name: "indices",
+    says: "indices_within gives the points of within, each once, in the same order at every call; the former \
+           content of the buffer is dropped",
+    look_for: "a search that compares squares and does not measure again at the rim; the center, or copies of it, \
+               left out; an order that depends on the threads; a missing `out.clear()`",
+};
+
+pub(super) static ALL: [&Law; 7] = [
+    &BUFFER,
+    &STRICTNESS,
+    &ORDER,
+    &TIES,
+    &BRUTE_FORCE,
+    &PLACES,
+    &INDICES,
+];
 
 /// A query: about a point of the cloud, with the distance of another as its radius.
 #[derive(Clone, Debug)]
@@ -103,7 +121,7 @@ fn queries() -> impl Strategy<Value = Query> {
 /// it is given; they may be the same thing twice.
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold ([`Failures`]).
 ///
 /// ```
 /// use crosscap_core::laws::{self, Scan, Settings, StraightLine};
@@ -116,7 +134,8 @@ fn queries() -> impl Strategy<Value = Query> {
 pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
     settings: &Settings,
     build: impl Fn(&PointCloud<f64>) -> (M, O),
-) -> Result<(), LawBroken> {
+) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &ALL);
     let queries = queries();
     type Answers<S> = [Vec<Neighbor<S>>; 2];
     let junk = || {
@@ -156,7 +175,7 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
         _ => format!("nearest({}, {})", query.center, query.count),
     };
 
-    BUFFER.holds(settings, &queries, |query| {
+    found.put(BUFFER.holds(settings, &queries, |query| {
         let (radius, found, _) = asked(query, &junk());
         for (k, found) in found.iter().enumerate() {
             let question = question(k, radius, query);
@@ -168,8 +187,8 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             );
         }
         Ok(())
-    })?;
-    STRICTNESS.holds(settings, &queries, |query| {
+    }));
+    found.put(STRICTNESS.holds(settings, &queries, |query| {
         let (radius, [found, _], _) = asked(query, &[]);
         let question = question(0, radius, query);
         for n in &found {
@@ -187,8 +206,8 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             show(&found)
         );
         Ok(())
-    })?;
-    ORDER.holds(settings, &queries, |query| {
+    }));
+    found.put(ORDER.holds(settings, &queries, |query| {
         let (radius, found, _) = asked(query, &[]);
         for (k, found) in found.iter().enumerate() {
             let key = |n: &Neighbor<M::Scalar>| (n.distance.as_f64(), n.index);
@@ -196,11 +215,11 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             ensure!(sorted, "{} is {}", question(k, radius, query), show(found));
         }
         Ok(())
-    })?;
+    }));
     let distances = |n: &[Neighbor<M::Scalar>]| -> Vec<u64> {
         n.iter().map(|n| n.distance.as_f64().to_bits()).collect()
     };
-    TIES.holds(settings, &queries, |query| {
+    found.put(TIES.holds(settings, &queries, |query| {
         let (radius, [_, found], [_, expected]): (_, Answers<_>, Answers<_>) = asked(query, &[]);
         // Another set of distances is no matter of ties.
         ensure!(
@@ -211,8 +230,8 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             show(&expected)
         );
         Ok(())
-    })?;
-    BRUTE_FORCE.holds(settings, &queries, |query| {
+    }));
+    found.put(BRUTE_FORCE.holds(settings, &queries, |query| {
         let (metric, oracle) = build(&query.cloud);
         ensure!(
             oracle.len() == metric.len(),
@@ -231,8 +250,8 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             );
         }
         Ok(())
-    })?;
-    PLACES.holds(settings, &queries, |query| {
+    }));
+    found.put(PLACES.holds(settings, &queries, |query| {
         let (metric, oracle) = build(&query.cloud);
         let radius = radius_of(&metric, query);
         let place: Vec<M::Scalar> = (query.cloud.point(query.center).iter())
@@ -250,14 +269,33 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             );
         }
         Ok(())
-    })
+    }));
+    found.put(INDICES.holds(settings, &queries, |query| {
+        let (metric, oracle) = build(&query.cloud);
+        let radius = radius_of(&metric, query);
+        let (mut first, mut again, mut near) = (vec![977; 3], vec![], vec![]);
+        oracle.indices_within(query.center, radius, &mut first);
+        oracle.indices_within(query.center, radius, &mut again);
+        ensure!(first == again, "asked twice: {first:?}, then {again:?}");
+        oracle.within(query.center, radius, &mut near);
+        let mut expected: Vec<u32> = near.iter().map(|n| n.index as u32).collect();
+        expected.sort_unstable();
+        first.sort_unstable();
+        ensure!(
+            first == expected,
+            "indices_within({}, {radius}) gives {first:?}, within {expected:?}",
+            query.center
+        );
+        Ok(())
+    }));
+    found.end()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::StraightLine;
     use super::super::reference::sort;
-    use super::super::twins::each_is_caught;
+    use super::super::twins::{each_is_caught, quick};
     use super::*;
 
     #[derive(Clone, Copy, PartialEq)]
@@ -271,6 +309,8 @@ mod tests {
         Forgetful,
         Rounded,
         WideAtPlaces,
+        InclusiveIndices,
+        KeptIndices,
     }
 
     struct Twin(Scan<StraightLine<f64>>, Fault);
@@ -320,6 +360,19 @@ mod tests {
                 self.0.nearest(center, count, out);
             }
         }
+        fn indices_within(&self, center: usize, radius: f64, out: &mut Vec<u32>) {
+            if self.1 != Fault::KeptIndices {
+                out.clear();
+            }
+            let mut near = vec![];
+            let wide = if self.1 == Fault::InclusiveIndices {
+                radius.next_up()
+            } else {
+                radius
+            };
+            self.within(center, wide, &mut near);
+            out.extend(near.iter().rev().map(|n| n.index as u32));
+        }
         fn within_of(&self, place: &[f64], radius: f64, out: &mut Vec<Neighbor<f64>>) -> bool {
             out.clear();
             for index in 0..self.len() {
@@ -333,8 +386,8 @@ mod tests {
         }
     }
 
-    fn put(fault: Fault) -> Result<(), LawBroken> {
-        oracle(&Settings::default(), |cloud| {
+    fn put(fault: Fault) -> Result<(), Failures> {
+        oracle(&quick(), |cloud| {
             let metric = StraightLine(cloud.clone());
             (metric.clone(), Twin(Scan(metric), fault))
         })
@@ -351,6 +404,8 @@ mod tests {
             (Fault::Forgetful, &BRUTE_FORCE),
             (Fault::Rounded, &BRUTE_FORCE),
             (Fault::WideAtPlaces, &PLACES),
+            (Fault::InclusiveIndices, &INDICES),
+            (Fault::KeptIndices, &INDICES),
         ];
         each_is_caught(put, Fault::None, faults);
     }
