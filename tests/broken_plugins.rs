@@ -506,9 +506,6 @@ fn models() {
     spoilt("cells_at_curve", |fit, _| fit.cells_at_curve.push(4));
     spoilt("cells_at_curve", |fit, _| fit.cells_at_curve[0] = 0);
     spoilt("cells_at_curve", |fit, _| fit.cells_at_curve[0] = 9);
-    spoilt("continuations", |fit, _| fit.continuations.push((0, 1)));
-    spoilt("continuations", |fit, _| fit.continuations.push((1, 77)));
-    spoilt("continuations", |fit, _| fit.continuations.push((1, 1)));
     spoilt("points", |fit, _| fit.points.push(vec![0.0; 3]));
     spoilt("the residual", |fit, _| fit.residual = -1e-3);
     spoilt("the residual", |fit, _| fit.residual = f64::NAN);

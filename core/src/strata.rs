@@ -14,17 +14,14 @@ pub struct Stratum {
 /// A neighborhood cut into strata, with every point labelled.
 ///
 /// # Invariants
-/// - `labels[k]` is an index into `strata`: the cells and curves partition the neighborhood;
-/// - `continuations` pairs cells: two cells that continue each other across a curve are
-///   one sheet. A cell may have several continuations (one a curve at its rim).
+/// `labels[k]` is an index into `strata`: points, curves and cells partition the neighborhood. What else must agree,
+/// [`Decomposition::check`] says.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Decomposition {
     /// The strata, those of lowest dimension first.
     pub strata: Vec<Stratum>,
     /// For each point of the neighborhood, the stratum it is in.
     pub labels: Vec<u8>,
-    /// Pairs of cells that are one sheet.
-    pub continuations: Vec<(u8, u8)>,
     /// For each curve (in the order of `strata`) the number of cells that meet in it: the
     /// number of triangles that an edge along it must have.
     pub cells_at_curve: Vec<u8>,
@@ -155,12 +152,7 @@ impl Decomposition {
             dimensions.is_sorted() && dimensions.iter().all(|&d| d <= 2),
             "strata of lowest dimension first, none above 2",
             || format!("the strata have the dimensions {dimensions:?}"),
-        )?;
-        let cell = |l: u8| dimensions.get(usize::from(l)) == Some(&2);
-        let pair = (self.continuations.iter()).find(|c| !cell(c.0) || !cell(c.1) || c.0 == c.1);
-        require(pair.is_none(), "continuations pair different cells", || {
-            format!("the pair {pair:?} of strata of the dimensions {dimensions:?}")
-        })
+        )
     }
 
     /// A cell of a ball meets a curve that goes through the ball from one side; where a curve ends in a

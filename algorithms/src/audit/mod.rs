@@ -10,7 +10,7 @@
 //! | metric | never NaN, identity, symmetry, triangle inequality | among the neighbors of 64 points; every distance used for NaN and sign |
 //! | oracle | range, order, strictness, agreement of both queries and with the metric | at 64 points |
 //! | estimator | finite value, confidence, rounding, bound | every answer |
-//! | singularity model | partition, order of strata, cells at curves, continuations, points, residual, center, offset | every decomposition |
+//! | singularity model | partition, order of strata, cells at curves, points, residual, center, offset | every decomposition |
 //! | selector | candidates only, separation, covering | whole |
 //! | chart | size, finite coordinates, distortion | every chart |
 //! | compatibility test | symmetry, known pairs | once; every "no", and every 16th answer |

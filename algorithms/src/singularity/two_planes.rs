@@ -495,7 +495,6 @@ impl SingularityModel for TwoPlanes {
             strata: std::iter::once(Stratum { dimension: 1 })
                 .chain(std::iter::repeat_n(Stratum { dimension: 2 }, 4))
                 .collect(),
-            continuations: vec![(1, 3), (2, 4)],
             cells_at_curve: vec![4],
             residual: fit.residual,
             parameters: 16,
