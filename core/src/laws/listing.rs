@@ -63,7 +63,8 @@ macro_rules! law_tests {
             identity "identity",
             symmetry "symmetry",
             triangle_inequality "triangle inequality",
-            many_at_once "many at once" }
+            many_at_once "many at once",
+            places "places" }
     };
     (@laws oracle $($then:tt)+) => {
         $crate::law_tests! { $($then)+
@@ -73,7 +74,8 @@ macro_rules! law_tests {
             ties "ties",
             equals_brute_force "equals brute force",
             places "places",
-            indices "indices" }
+            indices "indices",
+            nearness "nearness" }
     };
     (@laws estimator $($then:tt)+) => {
         $crate::law_tests! { $($then)+
@@ -82,7 +84,8 @@ macro_rules! law_tests {
             motion "motion",
             scale "scale",
             embedding "embedding",
-            order "order" }
+            order "order",
+            variances "variances" }
     };
     (@laws model $($then:tt)+) => {
         $crate::law_tests! { $($then)+

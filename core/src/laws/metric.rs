@@ -55,7 +55,17 @@ static MANY: Law = Law {
                between two points; a missing `out.clear()`; targets asked for twice",
 };
 
-pub(super) static ALL: [&Law; 5] = [&NEVER_NAN, &IDENTITY, &SYMMETRY, &TRIANGLE, &MANY];
+/// Places.
+static PLACES: Law = Law {
+    subject: SUBJECT,
+    name: "places",
+    says: "where places are named, there is one for every point, and a distance is the straight line between \
+           the two, within rounding",
+    look_for: "a metric that uses coordinates and measures otherwise, around a torus or along a surface: it must \
+               not name them; places in another order or unit than the points",
+};
+
+pub(super) static ALL: [&Law; 6] = [&NEVER_NAN, &IDENTITY, &SYMMETRY, &TRIANGLE, &MANY, &PLACES];
 
 /// Puts a metric through its laws, on all triples of clouds of 1 to 9 points in R^1 to R^5 with copies
 /// and ties.
@@ -139,6 +149,25 @@ pub fn metric<M: MetricSpace>(
                 many == alone,
                 "distances_to({from}, {to:?}) = {many:?}, one by one {alone:?}"
             );
+        }
+        Ok(())
+    }));
+    found.put(PLACES.holds(settings, &clouds, |cloud| {
+        let metric = build(cloud);
+        let (n, slack) = (metric.len(), 64.0 * rounding::<M::Scalar>());
+        let Some(places) = metric.places() else {
+            return Ok(());
+        };
+        ensure!(places.len() == n, "{} places for {n} points", places.len());
+        for a in 0..n {
+            for b in 0..n {
+                let d = metric.distance(a, b).as_f64();
+                let straight = places.squared_distance(a, b).sqrt();
+                ensure!(
+                    (d - straight).abs() <= slack * straight,
+                    "distance({a}, {b}) = {d}, the straight line between their places is {straight}"
+                );
+            }
         }
         Ok(())
     }));
@@ -229,6 +258,36 @@ mod tests {
     fn many_distances_in_another_precision_are_caught() {
         let broken = metric(&quick(), |cloud| Halved(StraightLine(cloud.clone())));
         catches(broken, &MANY);
+    }
+
+    /// A line of length 4 that closes to a circle, by the coordinates that it is unrolled in.
+    struct Rolled(PointCloud<f64>);
+
+    impl MetricSpace for Rolled {
+        type Scalar = f64;
+        fn len(&self) -> usize {
+            self.0.len()
+        }
+        fn distance(&self, a: usize, b: usize) -> f64 {
+            let d = (self.0.point(a)[0] - self.0.point(b)[0]).abs() % 4.0;
+            d.min(4.0 - d)
+        }
+        fn places(&self) -> Option<&PointCloud<f64>> {
+            Some(&self.0)
+        }
+        fn name(&self) -> &str {
+            "rolled"
+        }
+    }
+
+    #[test]
+    fn places_of_another_metric_are_caught() {
+        // Multiples of an eighth: the remainder is exact.
+        let build = |cloud: &PointCloud<f64>| {
+            let first = |row: &[f64]| (8.0 * row[0]).round() / 8.0;
+            Rolled(PointCloud::new(1, cloud.iter().map(first).collect()).unwrap())
+        };
+        catches(metric(&quick(), build), &PLACES);
     }
 
     #[test]

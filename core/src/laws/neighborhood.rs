@@ -73,7 +73,15 @@ static INDICES: Law = Law {
                left out; an order that depends on the threads; a missing `out.clear()`",
 };
 
-pub(super) static ALL: [&Law; 7] = [
+/// Nearness.
+static NEARNESS: Law = Law {
+    subject: SUBJECT,
+    name: "nearness",
+    says: "is_near says whether within_of finds a point, and no where the space has no coordinates",
+    look_for: "a search that stops before it has measured a point at the rim; another strictness than that of within",
+};
+
+pub(super) static ALL: [&Law; 8] = [
     &BUFFER,
     &STRICTNESS,
     &ORDER,
@@ -81,6 +89,7 @@ pub(super) static ALL: [&Law; 7] = [
     &BRUTE_FORCE,
     &PLACES,
     &INDICES,
+    &NEARNESS,
 ];
 
 /// A query: about a point of the cloud, with the distance of another as its radius.
@@ -288,6 +297,28 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
         );
         Ok(())
     }));
+    found.put(NEARNESS.holds(settings, &queries, |query| {
+        let (metric, oracle) = build(&query.cloud);
+        let radius = radius_of(&metric, query);
+        // The point itself, and a place between it and the one at the rim.
+        let (p, q) = (
+            query.cloud.point(query.center),
+            query.cloud.point(query.rim),
+        );
+        for share in [0.0, 0.5] {
+            let between = p.iter().zip(q).map(|(x, y)| x + share * (y - x));
+            let place: Vec<M::Scalar> = between.map(M::Scalar::of).collect();
+            let mut near = vec![];
+            let some = oracle.within_of(&place, radius, &mut near) && !near.is_empty();
+            let said = oracle.is_near(&place, radius);
+            ensure!(
+                said == some,
+                "is_near({place:?}, {radius}) is {said}, within_of finds {}",
+                show(&near)
+            );
+        }
+        Ok(())
+    }));
     found.end()
 }
 
@@ -311,6 +342,7 @@ mod tests {
         WideAtPlaces,
         InclusiveIndices,
         KeptIndices,
+        NearAtRim,
     }
 
     struct Twin(Scan<StraightLine<f64>>, Fault);
@@ -373,6 +405,11 @@ mod tests {
             self.within(center, wide, &mut near);
             out.extend(near.iter().rev().map(|n| n.index as u32));
         }
+        fn is_near(&self, place: &[f64], radius: f64) -> bool {
+            let d = |k: usize| crate::squared_distance(place, self.0.0.0.point(k)).sqrt();
+            let wide = self.1 == Fault::NearAtRim;
+            (0..self.len()).any(|k| d(k) < radius || wide && d(k) <= radius)
+        }
         fn within_of(&self, place: &[f64], radius: f64, out: &mut Vec<Neighbor<f64>>) -> bool {
             out.clear();
             for index in 0..self.len() {
@@ -406,6 +443,7 @@ mod tests {
             (Fault::WideAtPlaces, &PLACES),
             (Fault::InclusiveIndices, &INDICES),
             (Fault::KeptIndices, &INDICES),
+            (Fault::NearAtRim, &NEARNESS),
         ];
         each_is_caught(put, Fault::None, faults);
     }
