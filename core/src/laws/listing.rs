@@ -33,29 +33,27 @@ macro_rules! law_tests {
             #[allow(unused_imports)]
             use super::*;
 
-            fn settings_of(law: &'static str) -> $crate::laws::Settings {
+            // Once a module: what stands for the implementation is compiled once and not for every law.
+            fn put(law: &'static str) {
                 let mut settings = $crate::law_tests!(@settings $($settings)?);
                 $(settings.expected = ($expected).into();)?
                 settings.only = Some(law);
-                settings
+                if let Err(failures) = $crate::laws::$kit(&settings, $($input),+) {
+                    panic!("{failures}");
+                }
             }
 
-            $crate::law_tests!(@laws $kit @tests $kit [$($input),+]);
+            $crate::law_tests!(@laws $kit @tests);
         }
     )+};
     (@settings) => { $crate::laws::Settings::default() };
     (@settings $settings:expr) => { $settings };
-    (@tests $kit:ident $input:tt $($test:ident $law:literal),+) => {$(
+    (@tests $($test:ident $law:literal),+) => {$(
         #[test]
         fn $test() {
-            $crate::law_tests!(@put $kit $law $input)
+            put($law)
         }
     )+};
-    (@put $kit:ident $law:literal [$($input:expr),+]) => {
-        if let Err(failures) = $crate::laws::$kit(&settings_of($law), $($input),+) {
-            panic!("{failures}");
-        }
-    };
     (@names $($test:ident $law:literal),+) => { [$((stringify!($test), $law)),+] };
     (@laws metric $($then:tt)+) => {
         $crate::law_tests! { $($then)+
