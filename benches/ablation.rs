@@ -237,11 +237,13 @@ struct Number {
 }
 
 macro_rules! numbers {
+    (@out) => { None };
+    (@out $out:expr) => { Some($out) };
     ($($kind:ident $stage:ident.$field:ident $([$index:literal])? $(out $out:expr)?;)+) => {
         &[$(Number {
             name: concat!(stringify!($stage), ".", stringify!($field) $(, "[", stringify!($index), "]")?),
             place: |tuning| Place::$kind(&mut tuning.$stage.$field$([$index])?),
-            out: None$(.or(Some($out)))?,
+            out: numbers!(@out $($out)?),
         }),+]
     };
 }
