@@ -154,7 +154,6 @@ impl SingularityModel for AlternatingPlanes {
                 .map(|dimension| Stratum { dimension })
                 .to_vec(),
             labels,
-            continuations: vec![(1, 3), (2, 4)],
             cells_at_curve: vec![4],
             residual,
             parameters: 6,

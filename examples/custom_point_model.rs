@@ -147,7 +147,6 @@ impl SingularityModel for DoubleCone {
         Ok(Decomposition {
             strata: [0, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
             labels,
-            continuations: vec![],
             cells_at_curve: vec![],
             residual,
             parameters: 8,

@@ -4,20 +4,74 @@ use crate::pipeline::{Parameters, Pipeline};
 use crate::spaces::{MetricName, Spaces};
 use crate::watched::Distortion;
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{Error, PointCloud};
+use crosscap_core::{Error, MetricSpace, PointCloud};
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// What is compared.
+/// What a contender makes of the points and of the parameters of a run.
+type Setup<'a> = Box<dyn Fn(&PointCloud<f64>, Parameters) -> Result<Pipeline, Error> + Sync + 'a>;
+
+/// A metric that is compared: a named one, one of your own, or a whole pipeline.
+pub struct Contender<'a> {
+    name: String,
+    setup: Setup<'a>,
+}
+
+impl<'a> Contender<'a> {
+    /// A metric that this crate has, for the analysis and for the charts.
+    pub fn named(metric: MetricName) -> Self {
+        Self::pipeline(metric.to_string(), move |_, parameters| {
+            Pipeline::new(Parameters {
+                spaces: Spaces {
+                    metric,
+                    tri_metric: None,
+                    ..parameters.spaces
+                },
+                ..parameters
+            })
+        })
+    }
+
+    /// A metric of your own, for the analysis and for the charts: `build` makes it over the rows of the cloud, twice a
+    /// run.
+    pub fn metric<M: MetricSpace<Scalar = f64> + 'static>(
+        name: impl Into<String>,
+        build: impl Fn(&PointCloud<f64>) -> Result<M, Error> + Sync + 'a,
+    ) -> Self {
+        Self::pipeline(name, move |cloud, parameters| {
+            let own = || Ok::<_, Error>(Box::new(build(cloud)?));
+            Ok(Pipeline::new(parameters)?
+                .analysis_metric(own()?)
+                .triangulation_metric(own()?))
+        })
+    }
+
+    /// Any pipeline: `build` gets the cloud and the parameters of a run. Metrics, models and other parts can be
+    /// compared in this way.
+    pub fn pipeline(
+        name: impl Into<String>,
+        build: impl Fn(&PointCloud<f64>, Parameters) -> Result<Pipeline, Error> + Sync + 'a,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            setup: Box::new(build),
+        }
+    }
+
+    /// Its name in the runs.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+/// At which radii contenders are compared, and with what.
 ///
 /// The radius of a run is eps *and* the radius of the charts, as in the paper, where one radius
 /// serves both: charts are not kept at 3 dl, as they are otherwise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// The metrics, each for the analysis and for the charts.
-    pub metrics: Vec<MetricName>,
     /// The radii, unit of the data.
     pub radii: Vec<f64>,
     /// Radius of the analysis, where it is not to be that of the charts.
@@ -28,6 +82,19 @@ pub struct Comparison {
     pub ep: Option<f64>,
     /// Betti numbers over Q that the surface is known to have.
     pub betti: Option<[usize; 3]>,
+}
+
+impl Comparison {
+    /// At these radii, with the usual tolerances and nothing known of the surface.
+    pub fn new(radii: impl Into<Vec<f64>>) -> Self {
+        Self {
+            radii: radii.into(),
+            analysis_eps: None,
+            dp: None,
+            ep: None,
+            betti: None,
+        }
+    }
 }
 
 /// How a run ended.
@@ -44,11 +111,11 @@ pub enum RunState {
     Failed,
 }
 
-/// One metric at one radius.
+/// One contender at one radius.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ComparedRun {
-    /// Metric of analysis and charts.
-    pub metric: MetricName,
+    /// Name of the contender: the metric of analysis and charts.
+    pub metric: String,
     /// Radius of analysis and charts, unit of the data.
     pub eps: f64,
     /// How it ended.
@@ -77,16 +144,43 @@ impl ComparedRun {
     }
 }
 
-/// Runs every metric at every radius, each run on one thread, and calls `done` after each. The
-/// result is in the order of metrics, then radii, and but for the seconds the same for any number of
+/// Runs every contender at every radius, each run on one thread, and calls `done` after each. The
+/// result is in the order of contenders, then radii, and but for the seconds the same for any number of
 /// threads.
 ///
 /// # Errors
-/// [`Error::Parameter`] where no metric or no radius is given; what goes wrong in a run is in its
+/// [`Error::Parameter`] where no contender or no radius is given; what goes wrong in a run is in its
 /// [`ComparedRun::reason`].
+///
+/// ```
+/// use crosscap::comparison::{Comparison, Contender, compare};
+/// use crosscap::prelude::*;
+/// /// The angle between two directions, the length of the arc on the unit sphere.
+/// struct Angle(PointCloud<f64>);
+/// impl MetricSpace for Angle {
+///     type Scalar = f64;
+///     fn len(&self) -> usize { self.0.len() }
+///     fn distance(&self, a: usize, b: usize) -> f64 {
+///         // From the chord: 0 for equal points, and no arc cosine of more than 1.
+///         2.0 * (self.0.squared_distance(a, b).sqrt() / 2.0).min(1.0).asin()
+///     }
+///     fn name(&self) -> &str { "angle" }
+/// }
+/// let points = SampleSurface::find("sphere")?.sample(&Sampling::new(1500, 7))?.points;
+/// let contenders = [
+///     Contender::named(MetricName::Euclidean),
+///     Contender::metric("angle", |cloud| Ok(Angle(cloud.clone()))),
+/// ];
+/// let base = Parameters::new(0.6, 0.3).surface();
+/// let runs = compare(&points, &base, &contenders, &Comparison::new([0.8]), &|| ())?;
+/// assert!(runs.iter().all(|run| run.works()));
+/// assert_eq!(runs[1].metric, "angle");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn compare(
     cloud: &PointCloud<f64>,
     base: &Parameters,
+    contenders: &[Contender<'_>],
     comparison: &Comparison,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<ComparedRun>, Error> {
@@ -97,10 +191,10 @@ pub fn compare(
             expected: "at least one".into(),
         })
     };
-    needs("metrics", comparison.metrics.len())?;
+    needs("metrics", contenders.len())?;
     needs("eps", comparison.radii.len())?;
-    let jobs: Vec<(MetricName, f64)> = (comparison.metrics.iter())
-        .flat_map(|&metric| comparison.radii.iter().map(move |&eps| (metric, eps)))
+    let jobs: Vec<(&Contender<'_>, f64)> = (contenders.iter())
+        .flat_map(|contender| comparison.radii.iter().map(move |&eps| (contender, eps)))
         .collect();
     // Plain threads: one of a pool would take up another run while its own waits for the pool inside.
     let count = Threads::new(base.threads.unwrap_or(0))?.count();
@@ -111,11 +205,11 @@ pub fn compare(
             scope.spawn(|| {
                 loop {
                     let k = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(&(metric, eps)) = jobs.get(k) else {
+                    let Some(&(contender, eps)) = jobs.get(k) else {
                         break;
                     };
                     // Every job is taken once, so setting it cannot fail.
-                    let _ = runs[k].set(one(cloud, base, comparison, metric, eps));
+                    let _ = runs[k].set(one(cloud, base, comparison, contender, eps));
                     done();
                 }
             });
@@ -128,7 +222,7 @@ fn one(
     cloud: &PointCloud<f64>,
     base: &Parameters,
     comparison: &Comparison,
-    metric: MetricName,
+    contender: &Contender<'_>,
     radius: f64,
 ) -> ComparedRun {
     let eps = comparison.analysis_eps.unwrap_or(radius);
@@ -139,8 +233,6 @@ fn one(
         dp: comparison.dp.unwrap_or(usual.dp),
         ep: comparison.ep.unwrap_or(usual.ep),
         spaces: Spaces {
-            metric,
-            tri_metric: None,
             wide_charts: true,
             ..base.spaces.clone()
         },
@@ -148,10 +240,11 @@ fn one(
         ..base.clone()
     };
     let since = Instant::now();
-    let outcome = Pipeline::new(parameters).and_then(|mut p| p.reconstruct(cloud));
+    let pipeline = (contender.setup)(cloud, parameters);
+    let outcome = pipeline.and_then(|mut pipeline| pipeline.reconstruct(cloud));
     let seconds = Some(since.elapsed().as_secs_f64());
     let mut run = ComparedRun {
-        metric,
+        metric: contender.name.clone(),
         eps: radius,
         state: RunState::Failed,
         betti: None,

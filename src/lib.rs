@@ -29,10 +29,14 @@ pub use watched::Distortion;
 /// What a reconstruction needs, in one line.
 pub mod prelude {
     pub use crate::auto::{Auto, Pinned, Search};
+    pub use crate::comparison::{Comparison, Contender, compare};
     pub use crate::pipeline::{Method, Outcome, Parameters, Pipeline, Report, Stage};
     pub use crate::refusal::{Advice, Refusal};
+    pub use crate::spaces::{MetricName, Neighborhoods, Spaces, Warning};
     pub use crosscap_algorithms::certificate::Verdict;
+    pub use crosscap_algorithms::singularity::ModelName;
     pub use crosscap_algorithms::surfaces::{SampleSurface, Sampling};
+    pub use crosscap_backends::files::{MeshExtras, PointOptions, read_points, write_mesh};
     pub use crosscap_core::{
         Complex, DimensionEstimator, Error, LandmarkSelector, LocalChart, Mesh, MetricSpace,
         NeighborhoodOracle, PointCloud, SingularityModel,

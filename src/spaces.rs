@@ -1,6 +1,6 @@
 //! Which distances a reconstruction is made with, and what serves them.
 
-use crosscap_algorithms::metric::{BruteForceOracle, Lifted, tangent_planes};
+use crosscap_algorithms::metric::{BruteForceOracle, CheckedMetric, Lifted, tangent_planes};
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::ChartSpace;
 use crosscap_backends::euclidean::EuclideanOracle;
@@ -309,8 +309,8 @@ impl Engines {
     }
 }
 
-/// A metric of the user's with neighborhoods by looking at every point.
-pub(crate) type Custom = BruteForceOracle<Box<dyn MetricSpace<Scalar = f64>>>;
+/// A metric of the user's, whose answers are looked at, with neighborhoods by looking at every point.
+pub(crate) type Custom = BruteForceOracle<CheckedMetric<Box<dyn MetricSpace<Scalar = f64>>>>;
 
 /// The space of a metric of the user's.
 pub(crate) fn custom(oracle: &Custom) -> Space<'_, f64> {

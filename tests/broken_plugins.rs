@@ -5,9 +5,9 @@ use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::landmarks::RandomGreedy;
-use crosscap_algorithms::metric::Euclidean;
+use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
 use crosscap_algorithms::predicate::PlanarPredicate;
-use crosscap_algorithms::singularity::TwoPlanes;
+use crosscap_algorithms::singularity::{TriplePoint, TwoPlanes};
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::{AnalysisOptions, Analyzer, Dimensions, Tuning};
 use crosscap_algorithms::surfaces::Random;
@@ -141,6 +141,63 @@ fn metrics() {
         .triangulation_metric(Box::new(short))
         .reconstruct(&sphere());
     assert!(matches!(found, Err(Error::Shape { .. })));
+}
+
+fn by_analysis_metric(
+    bend: impl Fn(f64, usize, usize) -> f64 + Sync + 'static,
+    threads: usize,
+) -> Result<Outcome, Error> {
+    // Every point is looked at, not the landmarks alone.
+    let mut parameters = Parameters::new(0.6, 0.3);
+    parameters.threads = Some(threads);
+    Pipeline::new(parameters)?
+        .analysis_metric(Box::new(bent(bend)))
+        .reconstruct(&sphere())
+}
+
+/// The angle between two points of the sphere as a formula from a book has it: the arc cosine of the inner
+/// product, which rounding makes greater than 1 for some points and themselves, and 0 for none but a few.
+fn naive_angle() -> impl Fn(f64, usize, usize) -> f64 + Sync {
+    let cloud = sphere();
+    move |_, a, b| {
+        let (p, q) = (cloud.point(a), cloud.point(b));
+        (p[0] * q[0] + p[1] * q[1] + p[2] * q[2]).acos()
+    }
+}
+
+/// An oracle that is built on a metric has nothing right to say when the metric is none: the metric is named,
+/// wherever it is used, and whoever meets the answer first.
+#[test]
+fn a_metric_is_named_before_the_oracle_around_it() {
+    assert!(by_analysis_metric(|d, _, _| d, 0).unwrap().is_verified());
+    // No number beyond some distance, in a neighborhood and far outside of every one.
+    for limit in [0.4, 1.9] {
+        let far = move |d: f64, _: usize, _: usize| if d > limit { f64::NAN } else { d };
+        let found = names(by_analysis_metric(far, 1), "never NaN", 1200);
+        assert_eq!(found, names(by_analysis_metric(far, 2), "never NaN", 1200));
+        names(by_metric(far), "never NaN", 1200);
+    }
+    // None between two points alone.
+    let once = |d: f64, a: usize, b: usize| if (a, b) == (701, 13) { f64::NAN } else { d };
+    let found = names(by_analysis_metric(once, 2), "never NaN", 1200);
+    assert!(found.contains("at 701") && found.contains("to point 13"));
+    let below = |d: f64, a: usize, b: usize| if (a, b) == (701, 13) { -d } else { d };
+    names(by_analysis_metric(below, 2), "identity: distances", 1200);
+    let angle = naive_angle();
+    assert!((0..1200).any(|k| angle(0.0, k, k).is_nan()));
+    names(by_analysis_metric(naive_angle(), 2), "never NaN", 1200);
+    // Nobody looks at the answers of this one but the spot checks.
+    let angle = bent(naive_angle());
+    let found = analysis(&angle, &BruteForceOracle::new(&angle));
+    assert!(matches!(found, Err(Error::Law { plugin, .. }) if plugin == NAME));
+}
+
+/// Two spheres that no path joins, one of them with fewer points than a spot check asks for.
+#[test]
+fn infinity_is_no_fault() {
+    let mut apart = bent(|d, a, b| if (a < 5) == (b < 5) { d } else { f64::INFINITY });
+    apart.count = 1200;
+    assert_eq!(analysis(&apart, &BruteForceOracle::new(&apart)), Ok(()));
 }
 
 fn analysis(
@@ -343,17 +400,17 @@ fn estimators() {
 // Singularity models
 
 /// Two planes with a last step that spoils the answer.
-struct Tampered {
-    planes: TwoPlanes,
+struct Tampered<M> {
+    model: M,
     tamper: fn(&mut Decomposition, &LocalPoints<'_>),
 }
 
-impl SingularityModel for Tampered {
+impl<M: SingularityModel> SingularityModel for Tampered<M> {
     fn local_dimension(&self) -> usize {
         3
     }
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
-        let mut found = self.planes.decompose(local)?;
+        let mut found = self.model.decompose(local)?;
         (self.tamper)(&mut found, local);
         Ok(found)
     }
@@ -368,10 +425,48 @@ fn by_model(
 ) -> Result<Outcome, Error> {
     let mut parameters = Parameters::new(0.3, 0.15);
     parameters.threads = Some(threads);
-    let planes = TwoPlanes::new(parameters.dp, parameters.ep)?;
+    let model = TwoPlanes::new(parameters.dp, parameters.ep)?;
     Pipeline::new(parameters)?
-        .models(vec![Box::new(Tampered { planes, tamper })])
+        .models(vec![Box::new(Tampered { model, tamper })])
         .reconstruct(&crossing())
+}
+
+/// Three squares that cross in a point.
+fn triple() -> PointCloud<f64> {
+    let mut random = Random::new(9);
+    let mut rows = Vec::new();
+    for k in 0..4000 {
+        let mut row = [random.between(-0.6, 0.6), random.between(-0.6, 0.6), 0.0];
+        row.rotate_right(k % 3);
+        rows.extend(row);
+    }
+    PointCloud::new(3, rows).unwrap()
+}
+
+fn by_point_model(tamper: fn(&mut Decomposition, &LocalPoints<'_>)) -> Result<Outcome, Error> {
+    let parameters = Parameters::new(0.3, 0.15);
+    let planes = TwoPlanes::new(parameters.dp, parameters.ep)?;
+    let model = TriplePoint::new(parameters.dp, parameters.ep)?;
+    Pipeline::new(parameters)?
+        .models(vec![Box::new(planes), Box::new(Tampered { model, tamper })])
+        .reconstruct(&triple())
+}
+
+#[test]
+fn models_of_points() {
+    assert!(by_point_model(|_, _| {}).is_ok());
+    let spoilt = |words: &str, tamper: fn(&mut Decomposition, &LocalPoints<'_>)| {
+        names(by_point_model(tamper), words, 4000)
+    };
+    spoilt("points: no farther", |fit, local| {
+        fit.points[0][0] += 5.0 * local.radius
+    });
+    spoilt("points: a place", |fit, _| fit.points.clear());
+    spoilt("cells_at_curve", |fit, _| fit.cells_at_curve[3] = 25);
+    // The place of the center is not that of the point that it is said to be on.
+    spoilt("a center on a stratum of dimension 0", |fit, local| {
+        fit.points[0][1] += 0.1 * local.radius
+    });
 }
 
 #[test]
@@ -409,15 +504,32 @@ fn models() {
     });
     spoilt("cells_at_curve", |fit, _| fit.cells_at_curve.clear());
     spoilt("cells_at_curve", |fit, _| fit.cells_at_curve.push(4));
-    spoilt("continuations", |fit, _| fit.continuations.push((0, 1)));
-    spoilt("continuations", |fit, _| fit.continuations.push((1, 77)));
-    spoilt("continuations", |fit, _| fit.continuations.push((1, 1)));
+    spoilt("cells_at_curve", |fit, _| fit.cells_at_curve[0] = 0);
+    spoilt("cells_at_curve", |fit, _| fit.cells_at_curve[0] = 9);
     spoilt("points", |fit, _| fit.points.push(vec![0.0; 3]));
     spoilt("the residual", |fit, _| fit.residual = -1e-3);
     spoilt("the residual", |fit, _| fit.residual = f64::NAN);
     spoilt("the center offset", |fit, _| fit.center_offset = f64::NAN);
     spoilt("the center has", |fit, _| fit.center[1] = f64::NAN);
     spoilt("the center has", |fit, _| fit.center.push(0.0));
+    spoilt("the center offset is how far", |fit, local| {
+        fit.center[0] += 5.0 * local.radius
+    });
+    spoilt("the center offset of a center on", |fit, local| {
+        fit.center[0] += 5.0 * local.radius;
+        if fit.center_offset.is_finite() {
+            let own = local.point(local.center);
+            fit.center_offset = crosscap_core::squared_distance(own, &fit.center).sqrt();
+        } else {
+            fit.center = local.point(local.center).to_vec();
+        }
+    });
+    // A place for one in a cell where nothing is known.
+    spoilt("the center offset is how far", |fit, local| {
+        if fit.center_offset == f64::INFINITY {
+            fit.center[0] += 0.1 * local.radius
+        }
+    });
 }
 
 #[test]

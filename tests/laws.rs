@@ -1,13 +1,16 @@
 //! Every model of every trait, put through the laws of the trait.
 
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
 use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::dimension::{
     CorrelationDimension, MaximumLikelihood, PackingNumbers, PrincipalComponents, SpanningTree,
 };
 use crosscap_algorithms::landmarks::{MaxMin, RandomGreedy};
-use crosscap_algorithms::metric::{BruteForceOracle, Euclidean, GivenDistances, Lifted};
+use crosscap_algorithms::metric::{
+    BruteForceOracle, CheckedMetric, Euclidean, GivenDistances, Lifted,
+};
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::{
     BareCurve, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, OneSheet, TriplePoint,
@@ -17,8 +20,8 @@ use crosscap_algorithms::triangulate::{LargestAngle, MinimumCircumradius};
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
 use crosscap_backends::linear_program::LinearProgramTest;
-use crosscap_core::laws::{self, Instances, Settings, instances};
-use crosscap_core::{MetricSpace, PointCloud, Scalar};
+use crosscap_core::laws::{Draw, Instance, Instances, Settings, instances};
+use crosscap_core::{MetricSpace, PointCloud, Scalar, law_tests};
 
 /// More inputs than a plug-in author needs: these models are everybody's.
 fn settings() -> Settings {
@@ -60,196 +63,154 @@ fn geodesic<S: Scalar>(cloud: &PointCloud<f64>, rule: EdgeRule) -> GeodesicMetri
     GeodesicMetric::new(&kd_tree::<S>(cloud), rule).unwrap()
 }
 
-const RULES: [EdgeRule; 3] = [
-    EdgeRule::Nearest(2),
-    EdgeRule::Nearest(5),
-    EdgeRule::Within(1.0),
-];
+/// Which points the graphs join: few nearest, more of them, all within a distance.
+const FEW: EdgeRule = EdgeRule::Nearest(2);
+const MORE: EdgeRule = EdgeRule::Nearest(5);
+const WITHIN: EdgeRule = EdgeRule::Within(1.0);
 
-#[test]
-fn metrics() {
-    let s = &settings();
-    laws::metric(s, euclidean::<f64>).unwrap();
-    laws::metric(s, euclidean::<f32>).unwrap();
-    laws::metric(s, given::<f64>).unwrap();
-    laws::metric(s, given::<f32>).unwrap();
-    laws::metric(s, lifted::<f64>).unwrap();
-    laws::metric(s, lifted::<f32>).unwrap();
-    laws::metric(s, kd_tree::<f64>).unwrap();
-    laws::metric(s, kd_tree::<f32>).unwrap();
-    for rule in RULES {
-        laws::metric(s, |cloud| geodesic::<f64>(cloud, rule)).unwrap();
-        laws::metric(s, |cloud| geodesic::<f32>(cloud, rule)).unwrap();
-    }
+law_tests! {
+    mod euclidean_metric = metric(euclidean::<f64>), settings: settings();
+    mod euclidean_metric_f32 = metric(euclidean::<f32>), settings: settings();
+    mod given_metric = metric(given::<f64>), settings: settings();
+    mod given_metric_f32 = metric(given::<f32>), settings: settings();
+    mod lifted_metric = metric(lifted::<f64>), settings: settings();
+    mod lifted_metric_f32 = metric(lifted::<f32>), settings: settings();
+    mod tree_metric = metric(kd_tree::<f64>), settings: settings();
+    mod tree_metric_f32 = metric(kd_tree::<f32>), settings: settings();
+    mod geodesic_metric_of_few = metric(|cloud| geodesic::<f64>(cloud, FEW)), settings: settings();
+    mod geodesic_metric_of_more = metric(|cloud| geodesic::<f64>(cloud, MORE)), settings: settings();
+    mod geodesic_metric_within = metric(|cloud| geodesic::<f64>(cloud, WITHIN)), settings: settings();
+    mod geodesic_metric_of_few_f32 = metric(|cloud| geodesic::<f32>(cloud, FEW)), settings: settings();
+    mod geodesic_metric_of_more_f32 = metric(|cloud| geodesic::<f32>(cloud, MORE)), settings: settings();
+    mod geodesic_metric_within_f32 = metric(|cloud| geodesic::<f32>(cloud, WITHIN)), settings: settings();
+    mod checked_metric = metric(|cloud| CheckedMetric::new(euclidean::<f64>(cloud))),
+        settings: settings();
 }
 
-#[test]
-fn oracles() {
-    let s = &settings();
-    laws::oracle(s, |c| (kd_tree::<f64>(c), kd_tree::<f64>(c))).unwrap();
-    laws::oracle(s, |c| (kd_tree::<f32>(c), kd_tree::<f32>(c))).unwrap();
-    laws::oracle(s, |c| (euclidean::<f64>(c), kd_tree::<f64>(c))).unwrap();
-    laws::oracle(s, |c| (euclidean::<f32>(c), kd_tree::<f32>(c))).unwrap();
-    laws::oracle(s, |c| {
-        (given::<f64>(c), BruteForceOracle::new(given::<f64>(c)))
-    })
-    .unwrap();
-    laws::oracle(s, |c| {
-        (lifted::<f32>(c), BruteForceOracle::new(lifted::<f32>(c)))
-    })
-    .unwrap();
+law_tests! {
+    mod tree_oracle = oracle(|c| (kd_tree::<f64>(c), kd_tree::<f64>(c))), settings: settings();
+    mod tree_oracle_f32 = oracle(|c| (kd_tree::<f32>(c), kd_tree::<f32>(c))), settings: settings();
+    mod tree_of_euclidean = oracle(|c| (euclidean::<f64>(c), kd_tree::<f64>(c))),
+        settings: settings();
+    mod tree_of_euclidean_f32 = oracle(|c| (euclidean::<f32>(c), kd_tree::<f32>(c))),
+        settings: settings();
+    mod brute_force_of_given = oracle(|c| (given::<f64>(c), BruteForceOracle::new(given::<f64>(c)))),
+        settings: settings();
+    mod brute_force_of_lifted_f32 =
+        oracle(|c| (lifted::<f32>(c), BruteForceOracle::new(lifted::<f32>(c)))), settings: settings();
+    mod geodesic_oracle_of_few = oracle(|c| (geodesic::<f64>(c, FEW), geodesic::<f64>(c, FEW))),
+        settings: settings();
+    mod geodesic_oracle_of_more = oracle(|c| (geodesic::<f64>(c, MORE), geodesic::<f64>(c, MORE))),
+        settings: settings();
+    mod geodesic_oracle_within = oracle(|c| (geodesic::<f64>(c, WITHIN), geodesic::<f64>(c, WITHIN))),
+        settings: settings();
+    mod geodesic_oracle_of_few_f32 = oracle(|c| (geodesic::<f32>(c, FEW), geodesic::<f32>(c, FEW))),
+        settings: settings();
+    mod geodesic_oracle_of_more_f32 = oracle(|c| (geodesic::<f32>(c, MORE), geodesic::<f32>(c, MORE))),
+        settings: settings();
+    mod geodesic_oracle_within_f32 =
+        oracle(|c| (geodesic::<f32>(c, WITHIN), geodesic::<f32>(c, WITHIN))), settings: settings();
 }
 
-#[test]
-fn geodesic_oracles() {
-    let s = &settings();
-    for rule in RULES {
-        laws::oracle(s, |c| (geodesic::<f64>(c, rule), geodesic::<f64>(c, rule))).unwrap();
-        laws::oracle(s, |c| (geodesic::<f32>(c, rule), geodesic::<f32>(c, rule))).unwrap();
-    }
+law_tests! {
+    mod principal_components = estimator(&PrincipalComponents::<f64>::new(0.05).unwrap()),
+        settings: settings();
+    mod principal_components_f32 = estimator(&PrincipalComponents::<f32>::new(0.05).unwrap()),
+        settings: settings();
+    mod strict_principal_components = estimator(&PrincipalComponents::<f64>::new(0.01).unwrap()),
+        settings: settings();
+    mod strict_principal_components_f32 = estimator(&PrincipalComponents::<f32>::new(0.01).unwrap()),
+        settings: settings();
+    mod maximum_likelihood = estimator(&MaximumLikelihood::<f64>::new()), settings: settings();
+    mod maximum_likelihood_f32 = estimator(&MaximumLikelihood::<f32>::new()), settings: settings();
+    mod correlation_dimension = estimator(&CorrelationDimension::<f64>::new()), settings: settings();
+    mod correlation_dimension_f32 = estimator(&CorrelationDimension::<f32>::new()),
+        settings: settings();
+    mod packing_numbers = estimator(&PackingNumbers::<f64>::new()), settings: settings();
+    mod packing_numbers_f32 = estimator(&PackingNumbers::<f32>::new()), settings: settings();
+    mod spanning_tree = estimator(&SpanningTree::<f64>::new()), settings: settings();
+    mod spanning_tree_f32 = estimator(&SpanningTree::<f32>::new()), settings: settings();
 }
 
-#[test]
-fn dimension_estimators() {
-    for dt in [0.01, 0.05] {
-        laws::estimator(&settings(), &PrincipalComponents::<f64>::new(dt).unwrap()).unwrap();
-        laws::estimator(&settings(), &PrincipalComponents::<f32>::new(dt).unwrap()).unwrap();
-    }
-}
-
-#[test]
-fn dimension_estimators_from_distances() {
-    let s = &settings();
-    laws::estimator(s, &MaximumLikelihood::<f64>::new()).unwrap();
-    laws::estimator(s, &MaximumLikelihood::<f32>::new()).unwrap();
-    laws::estimator(s, &CorrelationDimension::<f64>::new()).unwrap();
-    laws::estimator(s, &CorrelationDimension::<f32>::new()).unwrap();
-    laws::estimator(s, &PackingNumbers::<f64>::new()).unwrap();
-    laws::estimator(s, &PackingNumbers::<f32>::new()).unwrap();
-    laws::estimator(s, &SpanningTree::<f64>::new()).unwrap();
-    laws::estimator(s, &SpanningTree::<f32>::new()).unwrap();
-}
-
-/// Instances as a generator draws them, for a model that fits them to this share of the radius.
-fn exact_to(
-    exact: f64,
-    draw: &dyn Fn(&mut instances::Draw) -> instances::Instance,
-) -> Instances<'_> {
+/// Instances of so many points.
+fn of(points: RangeInclusive<usize>, draw: &dyn Fn(&mut Draw) -> Instance) -> Instances<'_> {
     Instances {
-        exact,
+        points,
         ..Instances::new(draw)
     }
 }
 
-#[test]
-fn one_sheet() {
-    laws::model(
-        &settings(),
-        &OneSheet,
-        &Instances::new(&instances::flat_sheet),
-    )
-    .unwrap();
+fn two_planes() -> TwoPlanes {
+    TwoPlanes::new(0.1, 0.05).unwrap()
 }
 
-#[test]
-fn two_planes() {
-    let curved = TwoPlanes::new(0.1, 0.05).unwrap();
-    let (mut refined, mut flat) = (curved, curved);
-    refined.refinement_rounds = 20;
-    flat.curved = false;
-    for model in [curved, refined, flat] {
-        laws::model(&settings(), &model, &exact_to(1e-6, &instances::two_planes)).unwrap();
+/// With the refinement of the paper's equation (5).
+fn refined_planes() -> TwoPlanes {
+    let mut model = two_planes();
+    model.refinement_rounds = 20;
+    model
+}
+
+fn flat_planes() -> TwoPlanes {
+    let mut model = two_planes();
+    model.curved = false;
+    model
+}
+
+law_tests! {
+    mod one_sheet = model(&OneSheet, &Instances::new(&instances::flat_sheet)), settings: settings();
+    mod two_curved_planes = model(&two_planes(), &Instances::new(&instances::two_planes)),
+        settings: settings();
+    mod two_refined_planes = model(&refined_planes(), &Instances::new(&instances::two_planes)),
+        settings: settings();
+    mod two_flat_planes = model(&flat_planes(), &Instances::new(&instances::two_planes)),
+        settings: settings();
+    // The curve is as sharp as the sample: with fewer points the outermost ones leave wide notches.
+    mod boundary = model(&Boundary::new(0.1, 0.05).unwrap(), &of(400..=800, &instances::boundary)),
+        settings: settings();
+    mod y_junction =
+        model(&YJunction::new(0.1, 0.05).unwrap(), &Instances::new(&instances::y_junction)),
+        settings: settings();
+    // Two thirds of them are the neighborhood, and the model asks for 48.
+    mod triple_point =
+        model(&TriplePoint::new(0.1, 0.05).unwrap(), &of(150..=300, &instances::triple_point)),
+        settings: settings();
+    mod isolated_crossing =
+        model(
+            &IsolatedCrossing::new(0.1, 0.05).unwrap(),
+            &Instances::new(&instances::crossing_in_four_dimensions)
+        ),
+        settings: settings();
+    // A fifth of them are on the line, and two thirds of those in the neighborhood.
+    mod curve_through_sheet =
+        model(
+            &CurveThroughSheet::new(0.1, 0.05).unwrap(),
+            &of(150..=400, &instances::line_through_plane)
+        ),
+        settings: settings();
+    mod curve_on_sheet =
+        model(&CurveOnSheet::new(0.1, 0.05).unwrap(), &of(150..=400, &instances::line_on_plane)),
+        settings: settings();
+    mod bare_curve = model(&BareCurve::new(0.1, 0.05).unwrap(), &Instances::new(&instances::curve)),
+        settings: settings();
+}
+
+/// Pairs of triangles are quickly tried.
+fn many() -> Settings {
+    Settings {
+        cases: 3000,
+        ..settings()
     }
 }
 
-#[test]
-fn boundary() {
-    let model = Boundary::new(0.1, 0.05).unwrap();
-    let instances = Instances {
-        // The curve is as sharp as the sample: with fewer points the outermost ones leave wide notches.
-        points: 400..=800,
-        ..Instances::new(&instances::boundary)
-    };
-    laws::model(&settings(), &model, &instances).unwrap();
-}
-
-#[test]
-fn y_junction() {
-    let model = YJunction::new(0.1, 0.05).unwrap();
-    laws::model(&settings(), &model, &exact_to(1e-6, &instances::y_junction)).unwrap();
-}
-
-#[test]
-fn triple_point() {
-    let model = TriplePoint::new(0.1, 0.05).unwrap();
-    let instances = Instances {
-        // Two thirds of them are the neighborhood, and the model asks for 48.
-        points: 150..=300,
-        ..exact_to(1e-6, &instances::triple_point)
-    };
-    laws::model(&settings(), &model, &instances).unwrap();
-}
-
-#[test]
-fn isolated_crossing() {
-    let model = IsolatedCrossing::new(0.1, 0.05).unwrap();
-    let instances = exact_to(1e-6, &instances::crossing_in_four_dimensions);
-    laws::model(&settings(), &model, &instances).unwrap();
-}
-
-#[test]
-fn curve_through_sheet() {
-    let model = CurveThroughSheet::new(0.1, 0.05).unwrap();
-    let instances = Instances {
-        // A fifth of them are on the line, and two thirds of those in the neighborhood.
-        points: 150..=400,
-        ..exact_to(1e-6, &instances::line_through_plane)
-    };
-    laws::model(&settings(), &model, &instances).unwrap();
-}
-
-#[test]
-fn curve_on_sheet() {
-    let model = CurveOnSheet::new(0.1, 0.05).unwrap();
-    let instances = Instances {
-        // A fifth of them are on the line, and two thirds of those in the neighborhood.
-        points: 150..=400,
-        ..exact_to(1e-6, &instances::line_on_plane)
-    };
-    laws::model(&settings(), &model, &instances).unwrap();
-}
-
-#[test]
-fn bare_curve() {
-    let model = BareCurve::new(0.1, 0.05).unwrap();
-    laws::model(&settings(), &model, &exact_to(1e-6, &instances::curve)).unwrap();
-}
-
-#[test]
-fn charts() {
-    laws::chart(&settings(), &ClassicalScaling).unwrap();
-}
-
-#[test]
-fn landmark_selectors() {
-    laws::selector(&settings(), &RandomGreedy::<f64>::new()).unwrap();
-    laws::selector(&settings(), &RandomGreedy::<f32>::new()).unwrap();
-    laws::selector(&settings(), &MaxMin::<f64>::new()).unwrap();
-    laws::selector(&settings(), &MaxMin::<f32>::new()).unwrap();
-}
-
-#[test]
-fn compatibility_tests() {
-    let s = Settings {
-        cases: 3000,
-        ..settings()
-    };
-    laws::compatibility(&s, &PlanarPredicate).unwrap();
-    laws::compatibility(&s, &LinearProgramTest).unwrap();
-}
-
-#[test]
-fn triangle_rules() {
-    laws::rule(&settings(), &MinimumCircumradius).unwrap();
-    laws::rule(&settings(), &LargestAngle).unwrap();
+law_tests! {
+    mod classical_scaling = chart(&ClassicalScaling), settings: settings();
+    mod random_greedy = selector(&RandomGreedy::<f64>::new()), settings: settings();
+    mod random_greedy_f32 = selector(&RandomGreedy::<f32>::new()), settings: settings();
+    mod max_min = selector(&MaxMin::<f64>::new()), settings: settings();
+    mod max_min_f32 = selector(&MaxMin::<f32>::new()), settings: settings();
+    mod planar_predicate = compatibility(&PlanarPredicate), settings: many();
+    mod linear_program = compatibility(&LinearProgramTest), settings: many();
+    mod minimum_circumradius = rule(&MinimumCircumradius), settings: settings();
+    mod largest_angle = rule(&LargestAngle), settings: settings();
 }

@@ -6,7 +6,7 @@
 use crate::certificate::{CertificateOptions, SpecialPoint, certify};
 use crate::homology::homology;
 use crosscap_core::Mesh;
-use crosscap_core::laws::{self, Law, LawBroken, Settings};
+use crosscap_core::laws::{self, Failures, Findings, Law, LawBroken, Settings};
 
 static LINKS: Law = Law {
     subject: "a mesh",
@@ -31,7 +31,7 @@ static UNUSABLE: Law = Law {
 /// Holes, folds and distances to the points are for [`certify`].
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold; where the indices cannot be used, that alone.
 ///
 /// ```
 /// use crosscap_algorithms::laws;
@@ -43,11 +43,7 @@ static UNUSABLE: Law = Law {
 /// let mesh = Mesh::new(complex, PointCloud::new(3, corners).unwrap(), vec![-1; 4]).unwrap();
 /// laws::surface(&Settings::default(), &mesh, &[]).unwrap();
 /// ```
-pub fn surface(
-    settings: &Settings,
-    mesh: &Mesh,
-    special: &[SpecialPoint],
-) -> Result<(), LawBroken> {
+pub fn surface(settings: &Settings, mesh: &Mesh, special: &[SpecialPoint]) -> Result<(), Failures> {
     let complex = &mesh.complex;
     let broken = |law: &'static Law, found: String| LawBroken {
         law,
@@ -66,25 +62,36 @@ pub fn surface(
     };
     let certificate = certify(mesh, &options);
     if let Some(first) = certificate.indices.violations.first() {
-        return Err(broken(&UNUSABLE, first.to_string()));
+        return Err(broken(&UNUSABLE, first.to_string()).into());
     }
-    let links = certificate.links.unwrap_or_default();
     let groups = homology(complex).map_err(|e| broken(&UNUSABLE, e.to_string()))?;
-    laws::euler_poincare(complex, groups.betti_rational)?;
+    let of_complexes = laws::all()
+        .into_iter()
+        .filter(|law| ["Betti numbers", "a quantity of complexes"].contains(&law.subject));
+    let laws: Vec<&'static Law> = [&UNUSABLE, &LINKS]
+        .into_iter()
+        .chain(of_complexes)
+        .collect();
+    let mut found = Findings::new(settings, &laws);
+    found.put(laws::euler_poincare(complex, groups.betti_rational));
     for p in [2, 3] {
         if let Ok(betti) = groups.betti_mod(p) {
-            laws::euler_poincare(complex, betti)?;
+            found.put(laws::euler_poincare(complex, betti));
         }
     }
+    let links = certificate.links.unwrap_or_default();
     if let Some(first) = links.violations.first() {
-        return Err(broken(&LINKS, first.to_string()));
+        found.put(Err(broken(&LINKS, first.to_string())));
     }
-    let settings = Settings {
+    let few = Settings {
         cases: settings.cases.min(16),
         shrink_steps: settings.shrink_steps.min(64),
         ..settings.clone()
     };
-    laws::relabelling(&settings, complex, |renamed, _| homology(renamed))
+    found.put(laws::relabelling(&few, complex, |renamed, _| {
+        homology(renamed)
+    }));
+    found.end()
 }
 
 #[cfg(test)]
@@ -129,7 +136,11 @@ mod tests {
             |mesh: &Mesh, special: &[SpecialPoint]| surface(&Settings::default(), mesh, special);
         put(&tetrahedra(false, false), &[]).unwrap();
         let joined = tetrahedra(true, false);
-        let broken = put(&joined, &[]).unwrap_err();
+        let first = |found: Result<(), Failures>| {
+            let failures = found.unwrap_err();
+            failures.broken().next().unwrap().clone()
+        };
+        let broken = first(put(&joined, &[]));
         assert_eq!(broken.law.name, "links", "{broken}");
         assert!(broken.found.contains('0'), "{broken}");
         let declared = SpecialPoint {
@@ -139,7 +150,7 @@ mod tests {
                 .expect("two circles have a name"),
         };
         put(&joined, &[declared]).unwrap();
-        let broken = put(&tetrahedra(false, true), &[]).unwrap_err();
+        let broken = first(put(&tetrahedra(false, true), &[]));
         assert_eq!(broken.law.name, "indices", "{broken}");
     }
 }

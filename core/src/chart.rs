@@ -15,6 +15,12 @@ pub struct Chart {
 
 /// Lays a neighborhood out in a space of low dimension, from its distances alone.
 ///
+/// # Why it has this shape
+/// A chart gets distances and no coordinates, because behind the waist there are none: what is triangulated may
+/// have been measured in a laboratory. The matrix is full, since a chart holds a few dozen landmarks and every
+/// method of scaling needs all pairs. A chart says how much it loses and does not refuse for it: how much is too
+/// much is for the certificate, which sees the mesh.
+///
 /// # Laws
 /// - *flat data*: distances of points of a flat `dimension`-space are reproduced within rounding;
 /// - *distortion*: 0 for flat data, and growing with the share that is lost;

@@ -24,6 +24,13 @@ pub struct ChartTriangle {
 
 /// Decides how two triangles meet (the paper's linear program (6) is the reference).
 ///
+/// # Why it has this shape
+/// The whole triangulation rests on this one question, and there is one right answer to it; it is a trait so that
+/// a quick test can stand where the linear program of the paper stood, and be held against it. The answer has
+/// three values, because two triangles that share a side must not count as overlapping, and whether they share it is
+/// known from their corners, not from their places: a corner is compared by landmark. There is no tolerance to
+/// pass, since a tolerance would make the answer depend on the order of the questions.
+///
 /// # Laws
 /// - *symmetry*: `meeting(a, b) == meeting(b, a)`;
 /// - *motion, scale*: the same answer after a rigid motion or scaling of the chart;
@@ -42,6 +49,12 @@ pub trait CompatibilityTest: Sync {
 }
 
 /// Ranks the triangles that could stand on a dangling edge.
+///
+/// # Why it has this shape
+/// A rule sees three lengths and nothing else. They are the original distances, which a chart only approximates,
+/// and the same for every chart that holds the three landmarks: two stars that meet agree about which
+/// triangle is better. A rank is a number because all candidates of an edge are sorted by it; infinity says
+/// that a candidate is none.
 ///
 /// # Laws
 /// - *symmetry*: the same rank when the ends of the edge are exchanged;

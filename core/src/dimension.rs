@@ -19,6 +19,14 @@ pub struct DimensionEstimate {
 
 /// Estimates the dimension of the set that a neighborhood was sampled from.
 ///
+/// # Why it has this shape
+/// An estimator sees one neighborhood at a time and keeps nothing, so that neighborhoods can be worked on by many
+/// threads in any order. It gets distances and, where the space has them, coordinates; one that works by
+/// distances serves every space, and one that needs coordinates says so with an error instead of guessing. It
+/// returns more than a number: the value before rounding and a confidence, because a decision that could have
+/// fallen either way is treated as such. The radius is part of the neighborhood, because a threshold
+/// that is no share of it would give another answer in another unit.
+///
 /// # Laws
 /// - *motion*: the same answer after a rigid motion, within rounding;
 /// - *scale*: the same answer after uniform scaling of data and radius;

@@ -49,5 +49,5 @@ pub use metric::MetricSpace;
 pub use neighborhood::{Neighbor, Neighborhood, NeighborhoodOracle};
 pub use scalar::Scalar;
 pub use singularity::{LocalPoints, Rejection, SingularityModel};
-pub use strata::{Decomposition, Located, Stratum};
+pub use strata::{Contradiction, Decomposition, Located, Stratum};
 pub use waist::{CellNeighborhood, StratifiedLandmarks};

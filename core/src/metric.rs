@@ -4,6 +4,15 @@ use crate::{PointCloud, Scalar};
 
 /// A finite metric space: points are the integers `0..len()`.
 ///
+/// # Why it has this shape
+/// The method needs nothing of a space but the distances of points it was given, so that is all the trait asks:
+/// one required method that takes two indices. Indices, and not coordinates, because a measured matrix, a graph
+/// or a torus has none that would mean anything. Distances, and not their squares, because only distances of
+/// every kind of space satisfy the triangle inequality that the search for neighbors and the covering by
+/// landmarks rely on. `distances_to` has a default and exists because a search through a graph finds many
+/// distances for the price of one. There is no error to return: a metric has an answer for every pair, and one
+/// that has none has a fault, which is found where its answers are used.
+///
 /// # Laws
 /// For all points `a`, `b`, `c`:
 /// - *identity*: `distance(a, a) == 0` and distances are at least 0;

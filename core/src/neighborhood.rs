@@ -13,6 +13,14 @@ pub struct Neighbor<S> {
 
 /// Answers neighborhood queries in a finite metric space, exactly.
 ///
+/// # Why it has this shape
+/// An oracle is apart from the metric because one metric can be served in many ways: by a scan, a tree, a search
+/// through a graph. The answers must not depend on which it was, to the last tie, or a mesh would change with
+/// the engine; this is why order and ties are laws, and why an approximate index is no oracle. Answers are
+/// written into a buffer of the caller, so that ten thousand queries allocate once. Two queries are required,
+/// since neither can be had from the other at a fair price; those with a default body are there for
+/// implementations that can do them in less time, and say the same.
+///
 /// # Laws
 /// - *equals brute force*: the answer is that of a scan over all points with the metric
 ///   that the oracle claims to serve;

@@ -76,6 +76,17 @@ pub enum Rejection {
 
 /// Proposes a decomposition of a neighborhood, and says how well it fits.
 ///
+/// # Why it has this shape
+/// A model answers two questions that only it can answer, and leaves the others to the pipeline. Which strata are
+/// there, and in which of them is each point? How far are the points from what the model says? With the number of
+/// its parameters the second lets models compete that know nothing of each other, so that adding one to a list
+/// needs no change in any other. Whether a model is believed is not its own affair: it is compared with a
+/// single sheet, and rejects only what it cannot describe.
+///
+/// A model works in a fixed small number of principal coordinates, whatever the space of the data: a crossing of
+/// two sheets in R^72 lies in three dimensions, and a fit in them is quick. Rows behind those that are fitted are
+/// labelled as well, because cells are told apart a little farther out than a fit is good.
+///
 /// # Laws
 /// - *motion*: the same decomposition, up to the names of the cells, after a motion of the
 ///   data, from which principal coordinates are taken anew (signs of axes are arbitrary);

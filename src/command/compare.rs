@@ -11,7 +11,7 @@ use super::spaces::GraphArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
 use crosscap::auto::Input;
-use crosscap::comparison::{ComparedRun, Comparison, RunState, compare};
+use crosscap::comparison::{ComparedRun, Comparison, Contender, RunState, compare};
 use crosscap::{MetricName, Parameters};
 use crosscap_backends::files::{read_indices, write_bytes_whole};
 use crosscap_backends::geodesic::EdgeRule;
@@ -196,12 +196,19 @@ impl Compare {
                 "{e}; expected what `crosscap compare` writes as .json"
             ))
         })?;
-        let expected = table.comparison.metrics.len() * table.comparison.radii.len();
-        if table.runs.len() == expected && expected > 0 {
+        // One run for each metric and radius, in this order.
+        let radii = &table.comparison.radii;
+        let lanes = table.runs.chunks(radii.len().max(1));
+        let whole = |lane: &[ComparedRun]| {
+            let metric = &lane[0].metric;
+            (lane.iter().map(|run| (&run.metric, run.eps)))
+                .eq(radii.iter().map(|&eps| (metric, eps)))
+        };
+        if lanes.len() > 0 && lanes.clone().all(whole) {
             return Ok(table);
         }
         Err(wrong(format!(
-            "found {}, expected {expected}, one for each metric and radius",
+            "found {}, expected one for each metric and radius",
             counted(table.runs.len(), "run")
         )))
     }
@@ -229,8 +236,8 @@ impl Compare {
                 metrics.push(metric);
             }
         }
+        let contenders: Vec<Contender<'_>> = metrics.into_iter().map(Contender::named).collect();
         let comparison = Comparison {
-            metrics,
             radii,
             analysis_eps: self.analysis_eps,
             dp: self.dp,
@@ -252,10 +259,10 @@ impl Compare {
             ..Parameters::new(comparison.radii[0], dl)
         };
         base.spaces.check()?;
-        let count = comparison.metrics.len() * comparison.radii.len();
+        let count = contenders.len() * comparison.radii.len();
         let progress = Progress::of(count as u64, "runs");
         let done = || progress.step();
-        let runs = compare(&points, &base, &comparison, &done)?;
+        let runs = compare(&points, &base, &contenders, &comparison, &done)?;
         drop(progress);
         let mut table = Table {
             crosscap: env!("CARGO_PKG_VERSION").into(),

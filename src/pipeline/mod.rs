@@ -17,6 +17,7 @@ use crate::spaces::{Custom, Warning};
 use crosscap_algorithms::certificate::Limits;
 use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::landmarks::RandomGreedy;
+use crosscap_algorithms::metric::CheckedMetric;
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::stratify::Tuning;
 use crosscap_algorithms::triangulate::{
@@ -159,14 +160,14 @@ impl Pipeline {
     /// A metric of your own for the analysis, on the rows of the input: neighborhoods, landmarks, cells.
     /// Neighborhoods are found by looking at every point. Coordinates still come from the cloud.
     pub fn analysis_metric(mut self, metric: Box<dyn MetricSpace<Scalar = f64>>) -> Self {
-        self.parts.analysis_metric = Some(Custom::new(metric));
+        self.parts.analysis_metric = Some(Custom::new(CheckedMetric::new(metric)));
         self
     }
 
     /// A metric of your own for the charts, on the rows of the input: which landmarks are in a chart, and
     /// the distances that it is laid out from.
     pub fn triangulation_metric(mut self, metric: Box<dyn MetricSpace<Scalar = f64>>) -> Self {
-        self.parts.chart_metric = Some(Custom::new(metric));
+        self.parts.chart_metric = Some(Custom::new(CheckedMetric::new(metric)));
         self
     }
 

@@ -59,7 +59,13 @@ struct Judged {
 
 impl Pipeline {
     pub(crate) fn run(&mut self, input: &Input<'_>) -> Result<Outcome, Error> {
-        self.guarded(|pipeline| pipeline.stages(input))
+        let outcome = self.guarded(|pipeline| pipeline.stages(input));
+        // An answer that is no distance comes before all that followed from it.
+        let own = [&self.parts.analysis_metric, &self.parts.chart_metric];
+        for custom in own.into_iter().flatten() {
+            custom.metric().sound()?;
+        }
+        outcome
     }
 
     fn stages(&mut self, input: &Input<'_>) -> Result<Outcome, Error> {

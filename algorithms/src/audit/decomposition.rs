@@ -1,7 +1,9 @@
 //! Decompositions by singularity models.
 
 use super::{Faults, broken};
-use crosscap_core::{Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel};
+use crosscap_core::{
+    Contradiction, Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel,
+};
 
 /// Refuses a model whose coordinates could not be given to it.
 ///
@@ -25,103 +27,50 @@ pub(crate) fn sound(
     faults: &Faults,
 ) -> Option<Decomposition> {
     let fit = found.ok()?;
-    match check(&fit, local, model.name(), point) {
-        Ok(()) => Some(fit),
-        Err(error) => {
-            faults.add(point, error);
-            None
-        }
+    if let Err(wrong) = fit.check(local) {
+        remember(wrong, model, point, faults);
+        return None;
     }
+    if model.finds_boundary() && fit.cells_at_curve.iter().any(|&cells| cells != 1) {
+        let wrong = Contradiction {
+            law: "cells_at_curve: one at every curve of a model that finds boundaries",
+            found: format!("{:?}", fit.cells_at_curve),
+        };
+        remember(wrong, model, point, faults);
+        return None;
+    }
+    Some(fit)
 }
 
-/// What was found of rows around `point`; what cannot be used is remembered and left out.
+/// What was found of `rows` around `point`; what cannot be used is remembered and left out.
 pub(crate) fn placed(
     found: Vec<Option<Located>>,
+    rows: &[usize],
     local: &LocalPoints<'_>,
     model: &dyn SingularityModel,
     point: usize,
     faults: &Faults,
 ) -> Vec<Option<Located>> {
-    let sound = |x: &Located| {
-        let place = x.place.len() == local.dimension && x.place.iter().all(|c| c.is_finite());
-        let offset = x.offset >= 0.0 && (x.offset.is_finite() || x.dimension == 2);
-        if place && offset && x.dimension <= 2 {
-            return true;
+    let law = "decompose_about says of rows what decompose says of the center";
+    if found.len() != rows.len() {
+        let found = format!("{} answers for {} rows", found.len(), rows.len());
+        remember(Contradiction { law, found }, model, point, faults);
+        return vec![None; rows.len()];
+    }
+    let sound = |&row: &usize, x: &Located| match x.check(local.point(row), local.radius) {
+        Ok(()) => true,
+        Err(wrong) => {
+            let found = format!("{}: {}", wrong.law, wrong.found);
+            remember(Contradiction { law, found }, model, point, faults);
+            false
         }
-        let law = "decompose_about says of rows what decompose says of the center";
-        if let Err(error) = broken::<()>(model.name(), law, point, format!("{x:?}")) {
-            faults.add(point, error);
-        }
-        false
     };
-    found.into_iter().map(|x| x.filter(sound)).collect()
+    let pairs = found.into_iter().zip(rows);
+    pairs.map(|(x, row)| x.filter(|x| sound(row, x))).collect()
 }
 
-fn check(
-    fit: &Decomposition,
-    local: &LocalPoints<'_>,
-    plugin: &str,
-    point: usize,
-) -> Result<(), Error> {
-    let partition = "partition: every point has exactly one label";
-    if fit.labels.len() != local.len() {
-        let detail = format!("{} labels for {} points", fit.labels.len(), local.len());
-        return broken(plugin, partition, point, detail);
+fn remember(wrong: Contradiction, model: &dyn SingularityModel, point: usize, faults: &Faults) {
+    if let Err(error) = broken::<()>(model.name(), wrong.law, point, wrong.found) {
+        faults.add(point, error);
     }
-    let strata = fit.strata.len();
-    if let Some(k) = fit.labels.iter().position(|&l| l as usize >= strata) {
-        let detail = format!("label {} of {strata} strata", fit.labels[k]);
-        return broken(plugin, partition, point, detail);
-    }
-    let order = "strata of lowest dimension first, none above 2";
-    let dimensions: Vec<u8> = fit.strata.iter().map(|s| s.dimension).collect();
-    if !dimensions.is_sorted() || dimensions.iter().any(|&d| d > 2) {
-        return broken(plugin, order, point, format!("dimensions {dimensions:?}"));
-    }
-    let curves = dimensions.iter().filter(|&&d| d == 1).count();
-    let cells = "cells_at_curve: the number of cells at every curve";
-    if fit.cells_at_curve.len() != curves {
-        let detail = format!("{:?} for {curves} curves", fit.cells_at_curve);
-        return broken(plugin, cells, point, detail);
-    }
-    let cell = |l: u8| dimensions.get(l as usize) == Some(&2);
-    let pairs = &fit.continuations;
-    if let Some(&(a, b)) = pairs
-        .iter()
-        .find(|c| !cell(c.0) || !cell(c.1) || c.0 == c.1)
-    {
-        let law = "continuations pair different cells";
-        return broken(
-            plugin,
-            law,
-            point,
-            format!("strata {a} and {b} of {dimensions:?}"),
-        );
-    }
-    let apexes = dimensions.iter().filter(|&&d| d == 0).count();
-    let placed = |p: &Vec<f64>| p.len() == local.dimension && p.iter().all(|x| x.is_finite());
-    if fit.points.len() != apexes || !fit.points.iter().all(placed) {
-        let law = "points: a place for every stratum of dimension 0";
-        let detail = format!(
-            "{:?} for {apexes} strata, in {} coordinates",
-            fit.points, local.dimension
-        );
-        return broken(plugin, law, point, detail);
-    }
-    if !(fit.residual.is_finite() && fit.residual >= 0.0) {
-        let law = "the residual is finite and at least 0";
-        return broken(plugin, law, point, format!("{}", fit.residual));
-    }
-    // In a cell the singular stratum may be out of sight.
-    let on_it = dimensions[fit.labels[local.center] as usize] < 2;
-    if !(fit.center_offset >= 0.0 && (fit.center_offset.is_finite() || !on_it)) {
-        let law =
-            "the center offset is at least 0, and finite where the center is on a curve or point";
-        return broken(plugin, law, point, format!("{}", fit.center_offset));
-    }
-    if fit.center.len() != local.dimension || fit.center.iter().any(|c| !c.is_finite()) {
-        let law = "the center has finite coordinates, local_dimension of them";
-        return broken(plugin, law, point, format!("{:?}", fit.center));
-    }
-    Ok(())
 }

@@ -155,15 +155,19 @@ pub(crate) fn distance<S: Scalar>(
     if d >= S::zero() {
         return Ok(d);
     }
-    let law = if d.as_f64().is_nan() {
-        "never NaN"
-    } else {
-        "identity: distances are at least 0"
-    };
-    broken(
-        metric.name(),
-        law,
-        a,
-        format!("distance {} to point {b}", d.as_f64()),
-    )
+    Err(no_distance(metric.name(), a, b, d.as_f64()))
+}
+
+/// What is to be said of an answer that is no distance.
+pub(crate) fn no_distance(metric: &str, a: usize, b: usize, answer: f64) -> Error {
+    Error::Law {
+        plugin: metric.into(),
+        law: if answer.is_nan() {
+            "never NaN"
+        } else {
+            "identity: distances are at least 0"
+        },
+        point: a,
+        detail: format!("distance {answer} to point {b}"),
+    }
 }

@@ -7,14 +7,17 @@
 //!
 //! | plug-in | checked | where |
 //! | --- | --- | --- |
-//! | metric | never NaN, identity, symmetry, triangle inequality | among the neighbors of 64 points; every distance used for NaN |
+//! | metric | never NaN, identity, symmetry, triangle inequality | among the neighbors of 64 points; every distance used for NaN and sign |
 //! | oracle | range, order, strictness, agreement of both queries and with the metric | at 64 points |
 //! | estimator | finite value, confidence, rounding, bound | every answer |
-//! | singularity model | partition, order of strata, curves, continuations, residual, center | every decomposition |
+//! | singularity model | partition, order of strata, cells at curves, points, residual, center, offset | every decomposition |
 //! | selector | candidates only, separation, covering | whole |
 //! | chart | size, finite coordinates, distortion | every chart |
 //! | compatibility test | symmetry, known pairs | once; every "no", and every 16th answer |
 //! | triangle rule | never NaN, symmetry, a triangle without area last | every rank; the last two every 16th |
+//!
+//! A fault is put to the plug-in that made it. An oracle is compared with a metric and may be built on it, so that the
+//! metric is asked first, and an answer of the metric that is no distance is never held against the oracle.
 //!
 //! What was found is an [`Error::Law`](crosscap_core::Error::Law) with the plug-in, the law as the trait words it, and the
 //! point.
@@ -28,7 +31,7 @@ mod selection;
 mod triangulation;
 
 pub(crate) use decomposition::{local_dimension, placed, sound};
-pub(crate) use distances::{distance, metric};
+pub(crate) use distances::{distance, metric, no_distance};
 pub(crate) use estimate::dimension;
 pub(crate) use faults::Faults;
 pub(crate) use oracle::oracle;

@@ -5,7 +5,9 @@ use crosscap_core::{MetricSpace, Neighbor, NeighborhoodOracle, Scalar};
 /// Neighborhoods in any [`MetricSpace`], by a scan over all points: the reference that every other
 /// oracle must equal, and good enough for a few thousand points. `O(n)` distances a query.
 ///
-/// Points at infinite distance are in no neighborhood, and come last among the nearest.
+/// Points at infinite distance are in no neighborhood, and come last among the nearest. A metric that
+/// answers NaN breaks its law: here such points are in no neighborhood either, and behind all others among the
+/// nearest, so that nothing panics before the metric can be named ([`CheckedMetric`](super::CheckedMetric)).
 ///
 /// ```
 /// use crosscap_algorithms::metric::{BruteForceOracle, GivenDistances};
@@ -225,6 +227,38 @@ mod tests {
         }
     }
 
+    /// A sort that meets NaN may panic where the order contradicts itself: it takes some dozens of points.
+    #[test]
+    fn nan_comes_last_and_panics_nowhere() {
+        struct Short(Euclidean<f64>);
+        impl MetricSpace for Short {
+            type Scalar = f64;
+            fn len(&self) -> usize {
+                self.0.len()
+            }
+            fn distance(&self, a: usize, b: usize) -> f64 {
+                let d = self.0.distance(a, b);
+                if d > 20.0 { -f64::NAN } else { d }
+            }
+            fn name(&self) -> &str {
+                "short"
+            }
+        }
+        let places = (0..200).map(|k| f64::from(k * 37 % 200)).collect();
+        let oracle =
+            BruteForceOracle::new(Short(Euclidean::new(PointCloud::new(1, places).unwrap())));
+        let mut found = vec![];
+        for center in 0..200 {
+            oracle.nearest(center, 200, &mut found);
+            let numbers = found.partition_point(|n| !n.distance.is_nan());
+            assert!(found[..numbers].is_sorted_by_key(|n| n.distance));
+            assert!(found[numbers..].iter().all(|n| n.distance.is_nan()));
+            assert!(found[numbers..].is_sorted_by_key(|n| n.index));
+            oracle.within(center, f64::INFINITY, &mut found);
+            assert_eq!(found.len(), numbers);
+        }
+    }
+
     #[test]
     fn bad_tangent_planes_are_refused() {
         let cloud = || PointCloud::new(2, vec![0.0, 0.0, 1.0, 0.0]).unwrap();
@@ -242,6 +276,8 @@ mod tests {
                 .contains("weight")
         );
         assert!(error(1, good.clone(), -1.0).to_string().contains("weight"));
+        // Its square times 0 would be no number.
+        assert!(error(1, good.clone(), 1e200).to_string().contains("weight"));
         assert!(
             error(1, vec![1.0, 0.0, 0.5, 0.5], 1.0)
                 .to_string()

@@ -47,7 +47,7 @@ impl<S: Scalar> Lifted<S> {
     /// # Errors
     /// [`Error::Shape`] when the number of basis coordinates does not fit, [`Error::NotFinite`]
     /// (row: the point, column: the place in its basis), [`Error::Parameter`] when the weight is
-    /// negative or not finite, when the planes have more dimensions than the space or than 8, or for the
+    /// negative, not finite or too large to be squared, when the planes have more dimensions than the space or than 8, or for the
     /// first basis that is further than 1e-5 from orthonormal.
     pub fn new(
         cloud: impl Into<Arc<PointCloud<S>>>,
@@ -65,11 +65,11 @@ impl<S: Scalar> Lifted<S> {
                 expected: format!("at most {most} in R^{space}"),
             });
         }
-        if !(weight >= 0.0 && weight.is_finite()) {
+        if !(weight >= 0.0 && (weight * weight).is_finite()) {
             return Err(Error::Parameter {
                 name: "weight",
                 value: weight.to_string(),
-                expected: "a finite number, at least 0".into(),
+                expected: "at least 0, and so small that its square is finite".into(),
             });
         }
         let each = plane_dimension * space;

@@ -217,7 +217,6 @@ impl SingularityModel for Boundary {
         Ok(Decomposition {
             strata: [1, 2].map(|dimension| Stratum { dimension }).to_vec(),
             labels,
-            continuations: Vec::new(),
             cells_at_curve: vec![1],
             residual,
             parameters: 11,

@@ -58,7 +58,6 @@ impl SingularityModel for BareCurve {
         Ok(Decomposition {
             strata: vec![Stratum { dimension: 1 }],
             labels: vec![0; all.len()],
-            continuations: Vec::new(),
             cells_at_curve: vec![0],
             residual,
             parameters: 8,

@@ -303,7 +303,6 @@ impl Fit {
                 .iter()
                 .map(|&l| relabel[usize::from(l)])
                 .collect(),
-            continuations: Vec::new(),
             cells_at_curve: vec![0; usize::from(arcs)],
             residual: self.residual,
             parameters: 17,

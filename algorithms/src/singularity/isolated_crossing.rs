@@ -160,7 +160,6 @@ impl SingularityModel for IsolatedCrossing {
         Ok(Decomposition {
             strata: [0, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
             labels,
-            continuations: Vec::new(),
             cells_at_curve: Vec::new(),
             residual,
             parameters: 24,

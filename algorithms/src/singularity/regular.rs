@@ -34,7 +34,6 @@ impl SingularityModel for OneSheet {
         Ok(Decomposition {
             strata: vec![Stratum { dimension: 2 }],
             labels: vec![0; local.len()],
-            continuations: Vec::new(),
             cells_at_curve: Vec::new(),
             residual: (sum / local.fitted as f64).sqrt(),
             parameters: 8,

@@ -153,19 +153,8 @@ impl SingularityModel for TriplePoint {
         let center = locate(local.center).ok_or(Rejection::NoRealSolution)?;
         let located = rows.iter().map(|&row| locate(row)).collect();
         let dimensions = [0u8].into_iter().chain([1; 6]).chain([2; 12]);
-        let continuations = (0..3)
-            .flat_map(|k| {
-                [false, true].into_iter().flat_map(move |side| {
-                    [
-                        (cell(k, false, side), cell(k, true, side)),
-                        (cell(k, side, false), cell(k, side, true)),
-                    ]
-                })
-            })
-            .collect();
         let decomposition = Decomposition {
             strata: dimensions.map(|dimension| Stratum { dimension }).collect(),
-            continuations,
             cells_at_curve: vec![4; 6],
             residual,
             parameters: 24,

@@ -402,7 +402,6 @@ impl TwoPlanes {
             all,
             fitted: count,
             sheets,
-            origin,
             labels,
             residual,
         })
@@ -416,8 +415,6 @@ struct Sheets {
     all: Vec<Vector3<f64>>,
     fitted: usize,
     sheets: [QuadraticPatch; 2],
-    /// Where the line of the planes comes nearest to the center.
-    origin: Vector3<f64>,
     labels: Vec<u8>,
     residual: f64,
 }
@@ -435,7 +432,7 @@ impl Sheets {
                 (place, (place - x).norm())
             }
             None if singular => return None,
-            _ => (self.origin, f64::INFINITY),
+            _ => (x, f64::INFINITY),
         };
         Some(Located {
             dimension: if singular { 1 } else { 2 },
@@ -498,7 +495,6 @@ impl SingularityModel for TwoPlanes {
             strata: std::iter::once(Stratum { dimension: 1 })
                 .chain(std::iter::repeat_n(Stratum { dimension: 2 }, 4))
                 .collect(),
-            continuations: vec![(1, 3), (2, 4)],
             cells_at_curve: vec![4],
             residual: fit.residual,
             parameters: 16,

@@ -198,7 +198,6 @@ impl SingularityModel for YJunction {
         let located = rows.iter().map(|&row| locate(row)).collect();
         let decomposition = Decomposition {
             strata: [1, 2, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
-            continuations: Vec::new(),
             cells_at_curve: vec![3],
             residual,
             parameters: 22,

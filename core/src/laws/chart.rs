@@ -2,7 +2,7 @@
 
 use super::inputs::{cloud, ranks};
 use super::settings::{Outcome, ensure};
-use super::{Law, LawBroken, Settings};
+use super::{Failures, Findings, Law, Settings};
 use crate::{Chart, LocalChart, PointCloud};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -161,7 +161,7 @@ const CLOSE: f64 = 1e-6;
 /// 1e-6 to 1e6, and on symmetric matrices of any kind.
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold ([`Failures`]).
 ///
 /// ```no_run
 /// # use crosscap_core::{Chart, Error, LocalChart};
@@ -173,7 +173,8 @@ const CLOSE: f64 = 1e-6;
 /// use crosscap_core::laws::{self, Settings};
 /// laws::chart(&Settings::default(), &MyChart).unwrap();
 /// ```
-pub fn chart(settings: &Settings, chart: &impl LocalChart) -> Result<(), LawBroken> {
+pub fn chart(settings: &Settings, chart: &impl LocalChart) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &ALL);
     let drawn = |cloud: &PointCloud<f64>, dimension: usize| {
         let made = chart.chart(cloud.len(), &matrix(cloud), dimension);
         let made = made.map_err(|e| format!("refused: {e}"))?;
@@ -183,23 +184,25 @@ pub fn chart(settings: &Settings, chart: &impl LocalChart) -> Result<(), LawBrok
     // Lattice distances make zeros and equal eigenvalues; others belong to no space.
     let entry = || prop_oneof![(0..=2_u8).prop_map(f64::from), 0.0..1.0_f64];
     let all_kinds = (0..=9_usize, 1..=3_usize, vec(entry(), 36));
-    FINITE.holds(settings, &all_kinds, |(count, dimension, entries)| {
-        let mut all = vec![0.0; count * count];
-        let mut next = entries.iter().copied().cycle();
-        for a in 0..*count {
-            for b in 0..a {
-                let d = next.next().unwrap_or(0.0);
-                all[a * count + b] = d;
-                all[b * count + a] = d;
+    found.put(
+        FINITE.holds(settings, &all_kinds, |(count, dimension, entries)| {
+            let mut all = vec![0.0; count * count];
+            let mut next = entries.iter().copied().cycle();
+            for a in 0..*count {
+                for b in 0..a {
+                    let d = next.next().unwrap_or(0.0);
+                    all[a * count + b] = d;
+                    all[b * count + a] = d;
+                }
             }
-        }
-        let made = chart.chart(*count, &all, *dimension);
-        let made = made.map_err(|e| format!("refused {all:?}: {e}"))?;
-        distances(&made, *count, *dimension).map_err(|e| format!("{e}, from {all:?}"))?;
-        Ok(())
-    })?;
+            let made = chart.chart(*count, &all, *dimension);
+            let made = made.map_err(|e| format!("refused {all:?}: {e}"))?;
+            distances(&made, *count, *dimension).map_err(|e| format!("{e}, from {all:?}"))?;
+            Ok(())
+        }),
+    );
     let wrong = (2..=6_usize, 0..4_usize, any::<prop::sample::Index>());
-    REFUSAL.holds(settings, &wrong, |(count, kind, at)| {
+    found.put(REFUSAL.holds(settings, &wrong, |(count, kind, at)| {
         let line: Vec<f64> = (0..*count).map(|k| k as f64).collect();
         let mut all = matrix(&cloud(1, &line, 1.0));
         let at = at.index(all.len());
@@ -216,13 +219,13 @@ pub fn chart(settings: &Settings, chart: &impl LocalChart) -> Result<(), LawBrok
             Err(e) if !e.is_input() => Err(format!("'{e}' does not say that the input is bad")),
             Err(_) => Ok(()),
         }
-    })?;
-    FLAT.holds(settings, &bent(), |bent| {
+    }));
+    found.put(FLAT.holds(settings, &bent(), |bent| {
         let flat = bent.at(0.0);
         let (_, found) = drawn(&flat, bent.dimension)?;
         agree(&found, &matrix(&flat), CLOSE)
-    })?;
-    DISTORTION.holds(settings, &bent(), |bent| {
+    }));
+    found.put(DISTORTION.holds(settings, &bent(), |bent| {
         let flat = drawn(&bent.at(0.0), bent.dimension)?.0.distortion;
         ensure!(flat < 1e-6, "flat data have a distortion of {flat}");
         let mut before = flat.max(1e-6);
@@ -235,9 +238,9 @@ pub fn chart(settings: &Settings, chart: &impl LocalChart) -> Result<(), LawBrok
             before = now;
         }
         Ok(())
-    })?;
+    }));
     let keys = vec(any::<u16>(), 40);
-    MOTION.holds(
+    found.put(MOTION.holds(
         settings,
         &(bent(), 0.0..0.4_f64, keys),
         |(bent, height, keys)| {
@@ -254,12 +257,13 @@ pub fn chart(settings: &Settings, chart: &impl LocalChart) -> Result<(), LawBrok
                 .collect();
             agree(&moved, &expected, CLOSE).map_err(|e| format!("in the order {order:?} {e}"))
         },
-    )
+    ));
+    found.end()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::twins::each_is_caught;
+    use super::super::twins::{each_is_caught, quick};
     use super::*;
     use crate::Error;
     use nalgebra::{DMatrix, SymmetricEigen};
@@ -357,7 +361,7 @@ mod tests {
 
     #[test]
     fn every_fault_is_caught_by_its_law() {
-        let put = |fault| chart(&Settings::default(), &Twin(fault, AtomicUsize::new(0)));
+        let put = |fault| chart(&quick(), &Twin(fault, AtomicUsize::new(0)));
         let faults: &[(Fault, &Law)] = &[
             (Fault::Overflowing, &FINITE),
             (Fault::Open, &REFUSAL),

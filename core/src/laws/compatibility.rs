@@ -2,7 +2,7 @@
 
 use super::inputs::{LatticePair, area, lattice_pairs};
 use super::settings::ensure;
-use super::{Law, LawBroken, Settings};
+use super::{Failures, Findings, Law, Settings};
 use crate::{CompatibilityTest, Meeting};
 use proptest::prelude::*;
 
@@ -116,7 +116,7 @@ fn clear(pair: &LatticePair) -> bool {
 /// are in line, anyhow.
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold ([`Failures`]).
 ///
 /// ```no_run
 /// # use crosscap_core::{ChartTriangle, CompatibilityTest, Meeting};
@@ -128,9 +128,10 @@ fn clear(pair: &LatticePair) -> bool {
 /// use crosscap_core::laws::{self, Settings};
 /// laws::compatibility(&Settings::default(), &MyTest).unwrap();
 /// ```
-pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Result<(), LawBroken> {
+pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &ALL);
     let pairs = lattice_pairs();
-    SYMMETRY.holds(settings, &pairs, |pair| {
+    found.put(SYMMETRY.holds(settings, &pairs, |pair| {
         let [a, b] = pair.triangles(|p| p);
         let (there, back) = (test.meeting(&a, &b), test.meeting(&b, &a));
         ensure!(
@@ -138,7 +139,7 @@ pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Resu
             "meeting(a, b) is {there:?}, meeting(b, a) is {back:?}"
         );
         Ok(())
-    })?;
+    }));
     let compare = |pair: &LatticePair, what: &str, place: &dyn Fn([f64; 2]) -> [f64; 2]| {
         let [a, b] = pair.triangles(|p| p);
         let [c, d] = pair.triangles(place);
@@ -158,7 +159,7 @@ pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Resu
         0.0..std::f64::consts::TAU,
     );
     let moved = (lattice_pairs(), motions);
-    MOTION.holds(
+    found.put(MOTION.holds(
         settings,
         &moved,
         |(pair, (quarters, mirrored, shift, angle))| {
@@ -179,16 +180,16 @@ pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Resu
             }
             Ok(())
         },
-    )?;
-    SCALE.holds(
+    ));
+    found.put(SCALE.holds(
         settings,
         &(lattice_pairs(), -40..=40_i32),
         |(pair, exponent)| {
             let factor = f64::from(*exponent).exp2();
             compare(pair, "scaling", &|p| p.map(|x| x * factor))
         },
-    )?;
-    REFERENCE.holds(settings, &pairs, |pair| {
+    ));
+    found.put(REFERENCE.holds(settings, &pairs, |pair| {
         let [a, b] = pair.triangles(|p| p);
         let (found, expected) = (test.meeting(&a, &b), reference_meeting(pair));
         ensure!(
@@ -196,8 +197,8 @@ pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Resu
             "meeting(a, b) is {found:?}, expected {expected:?}"
         );
         Ok(())
-    })?;
-    AGREEMENT.holds(settings, &pairs, |pair| {
+    }));
+    found.put(AGREEMENT.holds(settings, &pairs, |pair| {
         let [a, b] = pair.triangles(|p| p);
         let (compatible, meeting) = (test.compatible(&a, &b), test.meeting(&a, &b));
         ensure!(
@@ -205,12 +206,13 @@ pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Resu
             "compatible(a, b) is {compatible}, meeting(a, b) is {meeting:?}"
         );
         Ok(())
-    })
+    }));
+    found.end()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::twins::each_is_caught;
+    use super::super::twins::{each_is_caught, quick};
     use super::*;
     use crate::ChartTriangle;
 
@@ -301,7 +303,7 @@ mod tests {
     fn every_fault_is_caught_by_its_law() {
         let settings = Settings {
             cases: 1000,
-            ..Settings::default()
+            ..quick()
         };
         let put = |fault| compatibility(&settings, &Twin(fault));
         let faults: &[(Fault, &Law)] = &[

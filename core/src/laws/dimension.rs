@@ -1,10 +1,10 @@
 //! Laws of [`DimensionEstimator`].
 
 use super::inputs::{FlatSample, flat_samples, ranks};
-use super::motion::{Motion, motions};
+use super::motion::{Motion, motions, principal};
 use super::reference::{StraightLine, rounding, sort};
 use super::settings::{Outcome, ensure};
-use super::{Law, LawBroken, Settings};
+use super::{Failures, Findings, Law, Settings};
 use crate::{
     DimensionEstimate, DimensionEstimator, Error, MetricSpace, Neighbor, Neighborhood, PointCloud,
     Scalar,
@@ -66,7 +66,19 @@ static ORDER: Law = Law {
     look_for: "a subset picked by index (the first half, every second one): pick by distance, or all",
 };
 
-pub(super) static ALL: [&Law; 6] = [&ANSWER, &ROUNDED, &MOTION, &SCALE, &EMBEDDING, &ORDER];
+/// Variances.
+static VARIANCES: Law = Law {
+    subject: SUBJECT,
+    name: "variances",
+    says: "where of_variances answers, it says of the variances of a neighborhood what estimate says of the \
+           neighborhood, within rounding",
+    look_for: "an answer that depends on more than the variances (leave the default); variances taken for their \
+               roots, or in rising order; a share of N where fewer variances than coordinates are given",
+};
+
+pub(super) static ALL: [&Law; 7] = [
+    &ANSWER, &ROUNDED, &MOTION, &SCALE, &EMBEDDING, &ORDER, &VARIANCES,
+];
 
 /// The neighborhood of the first point that holds all.
 struct Ball<S> {
@@ -149,7 +161,7 @@ fn same<S: Scalar>(
 /// What it finds on which data is not judged here: that is for tests of its own.
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold ([`Failures`]).
 ///
 /// ```
 /// use crosscap_core::laws::{self, Settings};
@@ -171,7 +183,8 @@ fn same<S: Scalar>(
 pub fn estimator<D: DimensionEstimator>(
     settings: &Settings,
     estimator: &D,
-) -> Result<(), LawBroken> {
+) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &ALL);
     let usable = |estimate: &DimensionEstimate| -> Outcome {
         ensure!(
             estimate.value >= 0.0 && estimate.value.is_finite(),
@@ -189,15 +202,15 @@ pub fn estimator<D: DimensionEstimator>(
         super::inputs::clouds(1..=4, 1..=8),
         flat_samples().prop_map(|s| s.cloud)
     ];
-    ANSWER.holds(settings, &all_kinds, |cloud| {
+    found.put(ANSWER.holds(settings, &all_kinds, |cloud| {
         let ball = Ball::new(cloud, 0);
         let first = ball.estimate(estimator);
         first.as_ref().map_or(Ok(()), usable)?;
         let again = ball.estimate(estimator);
         ensure!(first == again, "asked twice: {first:?}, then {again:?}");
         Ok(())
-    })?;
-    ROUNDED.holds(settings, &all_kinds, |cloud| {
+    }));
+    found.put(ROUNDED.holds(settings, &all_kinds, |cloud| {
         if let Ok(found) = Ball::new(cloud, 0).estimate(estimator) {
             let DimensionEstimate {
                 dimension, value, ..
@@ -208,7 +221,7 @@ pub fn estimator<D: DimensionEstimator>(
             );
         }
         Ok(())
-    })?;
+    }));
     let ask = |cloud: &PointCloud<f64>, center| Ball::new(cloud, center).estimate(estimator);
     let moved =
         |law: &'static Law, dimensions: usize, change: fn(&Motion, f64) -> (Motion, f64)| {
@@ -229,21 +242,39 @@ pub fn estimator<D: DimensionEstimator>(
         };
         (none, factor)
     };
-    moved(&MOTION, 0, |motion, _| (motion.clone(), 1.0))?;
-    moved(&SCALE, 0, still)?;
-    moved(&EMBEDDING, 6, |motion, _| (motion.clone(), 1.0))?;
+    found.put(moved(&MOTION, 0, |motion, _| (motion.clone(), 1.0)));
+    found.put(moved(&SCALE, 0, still));
+    found.put(moved(&EMBEDDING, 6, |motion, _| (motion.clone(), 1.0)));
     let keys = prop::collection::vec(any::<u16>(), 60);
-    ORDER.holds(settings, &(flat_samples(), keys), |(sample, keys)| {
-        let cloud = &sample.cloud;
-        let order = ranks(&keys[..cloud.len()]);
-        let center = order.iter().position(|&k| k == 0).unwrap_or(0);
-        same::<D::Scalar>(&ask(cloud, 0), &ask(&cloud.select(&order), center))
-    })
+    found.put(
+        ORDER.holds(settings, &(flat_samples(), keys), |(sample, keys)| {
+            let cloud = &sample.cloud;
+            let order = ranks(&keys[..cloud.len()]);
+            let center = order.iter().position(|&k| k == 0).unwrap_or(0);
+            same::<D::Scalar>(&ask(cloud, 0), &ask(&cloud.select(&order), center))
+        }),
+    );
+    found.put(VARIANCES.holds(settings, &flat_samples(), |sample| {
+        let cloud = sample.cloud.cast::<D::Scalar>().cast::<f64>();
+        let (n, count) = (cloud.dimension(), cloud.len());
+        let rows = principal(n, cloud.coordinates(), count);
+        let variance = |axis: usize| {
+            let along = rows.iter().skip(axis).step_by(n);
+            along.map(|x| x * x).sum::<f64>() / count as f64
+        };
+        let variances: Vec<f64> = (0..n).map(variance).collect();
+        match estimator.of_variances(&variances) {
+            Some(answer) => same::<D::Scalar>(&ask(&sample.cloud, 0), &Ok(answer))
+                .map_err(|e| format!("{e}, from the variances {variances:?}")),
+            None => Ok(()),
+        }
+    }));
+    found.end()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::twins::catches;
+    use super::super::twins::{catches, quick};
     use super::*;
 
     /// Reads the dimension off a number made from the neighborhood.
@@ -271,8 +302,8 @@ mod tests {
         total / around.neighbors.len() as f64
     }
 
-    fn put(read: fn(&Neighborhood<'_, f64>) -> f64) -> Result<(), LawBroken> {
-        estimator(&Settings::default(), &Read(read))
+    fn put(read: fn(&Neighborhood<'_, f64>) -> f64) -> Result<(), Failures> {
+        estimator(&quick(), &Read(read))
     }
 
     fn share(around: &Neighborhood<'_, f64>) -> f64 {
@@ -306,7 +337,7 @@ mod tests {
                 "coarse"
             }
         }
-        estimator(&Settings::default(), &Coarse).unwrap();
+        estimator(&quick(), &Coarse).unwrap();
     }
 
     #[test]
@@ -335,7 +366,7 @@ mod tests {
                 "up"
             }
         }
-        catches(estimator(&Settings::default(), &Up(0.05)), &ROUNDED);
+        catches(estimator(&quick(), &Up(0.05)), &ROUNDED);
     }
 
     #[test]
@@ -366,6 +397,55 @@ mod tests {
     fn the_dimension_of_the_space_is_caught() {
         let broken = put(|around| share(around) + around.cloud.unwrap().dimension() as f64);
         catches(broken, &EMBEDDING);
+    }
+
+    #[test]
+    fn other_variances_are_caught() {
+        /// Axes along which points spread by more than a tenth of the longest.
+        struct Spread {
+            of_roots: bool,
+        }
+        impl Spread {
+            fn count(&self, variances: &[f64], share: f64) -> DimensionEstimate {
+                let most = variances.iter().fold(0.0, |m: f64, v| m.max(*v));
+                let dimension = variances.iter().filter(|&&v| v > share * most).count();
+                // How far the nearest is from the limit.
+                let off = |v: &f64| (v / (share * most) - 1.0).abs();
+                DimensionEstimate {
+                    dimension,
+                    value: dimension as f64,
+                    confidence: variances.iter().map(off).fold(1.0, f64::min),
+                    spectrum: vec![],
+                }
+            }
+        }
+        impl DimensionEstimator for Spread {
+            type Scalar = f64;
+            fn estimate(&self, around: &Neighborhood<'_, f64>) -> Result<DimensionEstimate, Error> {
+                let (cloud, count) = (around.cloud.unwrap(), around.neighbors.len());
+                if count < 4 {
+                    return Ok(DimensionEstimate::default());
+                }
+                let rows: Vec<usize> = around.neighbors.iter().map(|n| n.index).collect();
+                let rows = principal(cloud.dimension(), cloud.select(&rows).coordinates(), count);
+                let along = |axis: usize| rows.iter().skip(axis).step_by(cloud.dimension());
+                let variance = |axis| along(axis).map(|x| x * x).sum::<f64>() / count as f64;
+                let variances: Vec<f64> = (0..cloud.dimension()).map(variance).collect();
+                if variances[0] > 0.0 {
+                    Ok(self.count(&variances, 0.01))
+                } else {
+                    Ok(DimensionEstimate::default())
+                }
+            }
+            fn of_variances(&self, variances: &[f64]) -> Option<DimensionEstimate> {
+                Some(self.count(variances, if self.of_roots { 0.1 } else { 0.01 }))
+            }
+            fn name(&self) -> &str {
+                "spread"
+            }
+        }
+        estimator(&quick(), &Spread { of_roots: false }).unwrap();
+        catches(estimator(&quick(), &Spread { of_roots: true }), &VARIANCES);
     }
 
     #[test]

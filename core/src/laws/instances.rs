@@ -23,9 +23,13 @@ impl Draw {
         }
     }
 
-    /// A number in `low..high`, uniformly.
+    /// A number in `low..high`, uniformly; `low` where that holds no number, as in `low..low`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.rng.random_range(low..high)
+        if low < high {
+            self.rng.random_range(low..high)
+        } else {
+            low
+        }
     }
 
     /// A number of mean 0 and variance 1: the sum of twelve uniform ones, so it is at most 6.
@@ -350,6 +354,14 @@ mod tests {
             found.dedup();
             assert_eq!(found, (0..strata as u8).collect::<Vec<_>>());
         }
+    }
+
+    #[test]
+    fn a_range_without_numbers_gives_its_lower_end() {
+        let mut draw = Draw::new(1, 0);
+        assert_eq!(draw.between(0.5, 0.5), 0.5);
+        assert_eq!(draw.between(0.5, -1.0), 0.5);
+        assert!((0.5..0.6).contains(&draw.between(0.5, 0.6)));
     }
 
     #[test]

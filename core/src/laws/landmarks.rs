@@ -3,7 +3,7 @@
 use super::inputs::{clouds, ranks};
 use super::reference::{Scan, StraightLine};
 use super::settings::ensure;
-use super::{Law, LawBroken, Settings};
+use super::{Failures, Findings, Law, Settings};
 use crate::{Error, LandmarkSelector, MetricSpace, PointCloud, Scalar};
 use proptest::prelude::*;
 
@@ -97,7 +97,7 @@ fn questions() -> impl Strategy<Value = Question> {
 /// them candidates, some taken, and distances that equal the separation.
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold ([`Failures`]).
 ///
 /// ```
 /// use crosscap_core::laws::{self, Settings};
@@ -128,7 +128,8 @@ fn questions() -> impl Strategy<Value = Question> {
 /// }
 /// laws::selector(&Settings::default(), &InTurn).unwrap();
 /// ```
-pub fn selector<L: LandmarkSelector>(settings: &Settings, selector: &L) -> Result<(), LawBroken> {
+pub fn selector<L: LandmarkSelector>(settings: &Settings, selector: &L) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &ALL);
     let questions = questions();
     let metric = |question: &Question| StraightLine(question.cloud.cast::<L::Scalar>());
     let select = |q: &Question, separation: f64| {
@@ -142,16 +143,16 @@ pub fn selector<L: LandmarkSelector>(settings: &Settings, selector: &L) -> Resul
     };
     let chosen = |q: &Question| select(q, q.separation).map_err(|e| format!("refused: {e}"));
     let bad = prop_oneof![Just(0.0), Just(-1.0), Just(f64::NAN)];
-    REFUSAL.holds(
+    found.put(REFUSAL.holds(
         settings,
         &(questions, bad),
         |(question, separation)| match select(question, *separation) {
             Err(Error::Parameter { .. }) => Ok(()),
             other => Err(format!("the separation {separation} gave {other:?}")),
         },
-    )?;
+    ));
     let questions = self::questions();
-    SUBSET.holds(settings, &questions, |question| {
+    found.put(SUBSET.holds(settings, &questions, |question| {
         let chosen = chosen(question)?;
         for (k, c) in chosen.iter().enumerate() {
             ensure!(
@@ -161,8 +162,8 @@ pub fn selector<L: LandmarkSelector>(settings: &Settings, selector: &L) -> Resul
             ensure!(!chosen[..k].contains(c), "point {c} twice in {chosen:?}");
         }
         Ok(())
-    })?;
-    SEPARATION.holds(settings, &questions, |question| {
+    }));
+    found.put(SEPARATION.holds(settings, &questions, |question| {
         let (metric, chosen) = (metric(question), chosen(question)?);
         for (k, &a) in chosen.iter().enumerate() {
             for &b in chosen[..k].iter().chain(&question.taken) {
@@ -174,8 +175,8 @@ pub fn selector<L: LandmarkSelector>(settings: &Settings, selector: &L) -> Resul
             }
         }
         Ok(())
-    })?;
-    COVERING.holds(settings, &questions, |question| {
+    }));
+    found.put(COVERING.holds(settings, &questions, |question| {
         let (metric, chosen) = (metric(question), chosen(question)?);
         for &c in &question.candidates {
             let centers = chosen.iter().chain(&question.taken);
@@ -188,17 +189,18 @@ pub fn selector<L: LandmarkSelector>(settings: &Settings, selector: &L) -> Resul
             );
         }
         Ok(())
-    })?;
-    REPRODUCIBLE.holds(settings, &questions, |question| {
+    }));
+    found.put(REPRODUCIBLE.holds(settings, &questions, |question| {
         let (first, again) = (chosen(question)?, chosen(question)?);
         ensure!(first == again, "asked twice: {first:?}, then {again:?}");
         Ok(())
-    })
+    }));
+    found.end()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::twins::each_is_caught;
+    use super::super::twins::{each_is_caught, quick};
     use super::*;
     use crate::NeighborhoodOracle;
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -273,7 +275,7 @@ mod tests {
 
     #[test]
     fn every_fault_is_caught_by_its_law() {
-        let put = |fault| selector(&Settings::default(), &Twin(fault, AtomicUsize::new(0)));
+        let put = |fault| selector(&quick(), &Twin(fault, AtomicUsize::new(0)));
         let faults: &[(Fault, &Law)] = &[
             (Fault::AnySeparation, &REFUSAL),
             (Fault::Positions, &SUBSET),

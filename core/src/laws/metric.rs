@@ -3,7 +3,7 @@
 use super::inputs::clouds;
 use super::reference::rounding;
 use super::settings::ensure;
-use super::{Law, LawBroken, Settings};
+use super::{Failures, Findings, Law, Settings};
 use crate::{MetricSpace, PointCloud, Scalar};
 
 const SUBJECT: &str = "MetricSpace";
@@ -55,7 +55,17 @@ static MANY: Law = Law {
                between two points; a missing `out.clear()`; targets asked for twice",
 };
 
-pub(super) static ALL: [&Law; 5] = [&NEVER_NAN, &IDENTITY, &SYMMETRY, &TRIANGLE, &MANY];
+/// Places.
+static PLACES: Law = Law {
+    subject: SUBJECT,
+    name: "places",
+    says: "where places are named, there is one for every point, and a distance is the straight line between \
+           the two, within rounding",
+    look_for: "a metric that uses coordinates and measures otherwise, around a torus or along a surface: it must \
+               not name them; places in another order or unit than the points",
+};
+
+pub(super) static ALL: [&Law; 6] = [&NEVER_NAN, &IDENTITY, &SYMMETRY, &TRIANGLE, &MANY, &PLACES];
 
 /// Puts a metric through its laws, on all triples of clouds of 1 to 9 points in R^1 to R^5 with copies
 /// and ties.
@@ -64,7 +74,7 @@ pub(super) static ALL: [&Law; 5] = [&NEVER_NAN, &IDENTITY, &SYMMETRY, &TRIANGLE,
 /// leave points out.
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold ([`Failures`]).
 ///
 /// ```
 /// use crosscap_core::laws::{self, Settings, StraightLine};
@@ -73,7 +83,8 @@ pub(super) static ALL: [&Law; 5] = [&NEVER_NAN, &IDENTITY, &SYMMETRY, &TRIANGLE,
 pub fn metric<M: MetricSpace>(
     settings: &Settings,
     build: impl Fn(&PointCloud<f64>) -> M,
-) -> Result<(), LawBroken> {
+) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &ALL);
     let clouds = clouds(1..=5, 1..=9);
     // What the test says of a pair and its distances, both ways.
     let on_pairs = |law: &'static Law, test: fn(usize, usize, f64, f64) -> bool| {
@@ -92,10 +103,14 @@ pub fn metric<M: MetricSpace>(
             Ok(())
         })
     };
-    on_pairs(&NEVER_NAN, |_, _, d, _| !d.is_nan())?;
-    on_pairs(&IDENTITY, |a, b, d, _| d >= 0.0 && (a != b || d == 0.0))?;
-    on_pairs(&SYMMETRY, |_, _, d, back| d.to_bits() == back.to_bits())?;
-    TRIANGLE.holds(settings, &clouds, |cloud| {
+    found.put(on_pairs(&NEVER_NAN, |_, _, d, _| !d.is_nan()));
+    found.put(on_pairs(&IDENTITY, |a, b, d, _| {
+        d >= 0.0 && (a != b || d == 0.0)
+    }));
+    found.put(on_pairs(&SYMMETRY, |_, _, d, back| {
+        d.to_bits() == back.to_bits()
+    }));
+    found.put(TRIANGLE.holds(settings, &clouds, |cloud| {
         let metric = build(cloud);
         let n = metric.len();
         let all: Vec<f64> = (0..n * n)
@@ -119,8 +134,8 @@ pub fn metric<M: MetricSpace>(
             }
         }
         Ok(())
-    })?;
-    MANY.holds(settings, &clouds, |cloud| {
+    }));
+    found.put(MANY.holds(settings, &clouds, |cloud| {
         let metric = build(cloud);
         let n = metric.len();
         // Backwards, and the first one twice.
@@ -136,13 +151,33 @@ pub fn metric<M: MetricSpace>(
             );
         }
         Ok(())
-    })
+    }));
+    found.put(PLACES.holds(settings, &clouds, |cloud| {
+        let metric = build(cloud);
+        let (n, slack) = (metric.len(), 64.0 * rounding::<M::Scalar>());
+        let Some(places) = metric.places() else {
+            return Ok(());
+        };
+        ensure!(places.len() == n, "{} places for {n} points", places.len());
+        for a in 0..n {
+            for b in 0..n {
+                let d = metric.distance(a, b).as_f64();
+                let straight = places.squared_distance(a, b).sqrt();
+                ensure!(
+                    (d - straight).abs() <= slack * straight,
+                    "distance({a}, {b}) = {d}, the straight line between their places is {straight}"
+                );
+            }
+        }
+        Ok(())
+    }));
+    found.end()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::twins::catches;
-    use super::super::{Settings, StraightLine};
+    use super::super::StraightLine;
+    use super::super::twins::{catches, quick};
     use super::*;
 
     /// Straight-line distances, spoiled.
@@ -161,8 +196,8 @@ mod tests {
         }
     }
 
-    fn put(spoil: fn(usize, usize, f64) -> f64) -> Result<(), LawBroken> {
-        metric(&Settings::default(), |cloud| {
+    fn put(spoil: fn(usize, usize, f64) -> f64) -> Result<(), Failures> {
+        metric(&quick(), |cloud| {
             Spoiled(StraightLine(cloud.clone()), spoil)
         })
     }
@@ -172,10 +207,7 @@ mod tests {
         put(|_, _, d| d).unwrap();
         put(|_, _, d| if d < 2.0 { d } else { f64::INFINITY }).unwrap_err();
         put(|a, b, _| if a == b { 0.0 } else { f64::INFINITY }).unwrap();
-        metric(&Settings::default(), |cloud| {
-            StraightLine(cloud.cast::<f32>())
-        })
-        .unwrap();
+        metric(&quick(), |cloud| StraightLine(cloud.cast::<f32>())).unwrap();
     }
 
     #[test]
@@ -224,10 +256,38 @@ mod tests {
 
     #[test]
     fn many_distances_in_another_precision_are_caught() {
-        let broken = metric(&Settings::default(), |cloud| {
-            Halved(StraightLine(cloud.clone()))
-        });
+        let broken = metric(&quick(), |cloud| Halved(StraightLine(cloud.clone())));
         catches(broken, &MANY);
+    }
+
+    /// A line of length 4 that closes to a circle, by the coordinates that it is unrolled in.
+    struct Rolled(PointCloud<f64>);
+
+    impl MetricSpace for Rolled {
+        type Scalar = f64;
+        fn len(&self) -> usize {
+            self.0.len()
+        }
+        fn distance(&self, a: usize, b: usize) -> f64 {
+            let d = (self.0.point(a)[0] - self.0.point(b)[0]).abs() % 4.0;
+            d.min(4.0 - d)
+        }
+        fn places(&self) -> Option<&PointCloud<f64>> {
+            Some(&self.0)
+        }
+        fn name(&self) -> &str {
+            "rolled"
+        }
+    }
+
+    #[test]
+    fn places_of_another_metric_are_caught() {
+        // Multiples of an eighth: the remainder is exact.
+        let build = |cloud: &PointCloud<f64>| {
+            let first = |row: &[f64]| (8.0 * row[0]).round() / 8.0;
+            Rolled(PointCloud::new(1, cloud.iter().map(first).collect()).unwrap())
+        };
+        catches(metric(&quick(), build), &PLACES);
     }
 
     #[test]

@@ -1,19 +1,21 @@
 //! The law kit: what any implementation of a trait can be put through.
 //!
 //! The traits of this crate state laws that the pipeline relies on. The kit turns each law into a
-//! property that is tested on drawn inputs; one line in a test of your crate puts your plug-in
-//! through all of them:
+//! property that is tested on drawn inputs. In a test of your crate one line writes a test for each law of a trait:
+//!
+//! ```
+//! # use crosscap_core::laws::StraightLine as MyMetric;
+//! crosscap_core::law_tests! {
+//!     mod my_metric = metric(|cloud| MyMetric(cloud.clone()));
+//! }
+//! ```
+//!
+//! and the functions below put a plug-in through all of them at once:
 //!
 //! ```
 //! # use crosscap_core::laws::StraightLine as MyMetric;
 //! use crosscap_core::laws::{self, Settings};
-//! # /*
-//! #[test]
-//! # */
-//! fn my_metric_obeys_the_laws() {
-//!     laws::metric(&Settings::default(), |cloud| MyMetric(cloud.clone())).unwrap();
-//! }
-//! # my_metric_obeys_the_laws();
+//! laws::metric(&Settings::default(), |cloud| MyMetric(cloud.clone())).unwrap();
 //! ```
 //!
 //! ```toml
@@ -37,8 +39,9 @@
 //! # What a failure says
 //! [`LawBroken`] names the law, shows the smallest input that was found to break it, what came out,
 //! and what usually is wrong in such a case. Laws are tried one after the other, the more basic
-//! first, and the first that does not hold is reported. Inputs are the same at every run: a failure
-//! stays until it is mended. [`Settings`] says how many there are.
+//! first, and [`Failures`] holds all that do not hold: the first often explains the others. Inputs are the same at
+//! every run: a failure stays until it is mended. [`Settings`] says how many there are, picks one law, and marks
+//! those that are known not to hold.
 //!
 //! A law that holds on all inputs that were drawn is not proven. And the kit does not judge what it
 //! cannot know: whether a dimension is the right one, whether a distance is a useful one.
@@ -46,7 +49,7 @@
 //! # What is behind it
 //! Inputs come from [proptest](https://docs.rs/proptest), which also makes them smaller; [`inputs`]
 //! has the strategies, for tests of your own. [`all`] lists the laws. For each of them the tests of
-//! this module hold an implementation that breaks just that law.
+//! this module hold an implementation that breaks that law and none before it.
 
 mod chart;
 mod compatibility;
@@ -55,6 +58,7 @@ pub mod inputs;
 pub mod instances;
 mod landmarks;
 mod law;
+mod listing;
 mod metric;
 mod motion;
 mod neighborhood;
@@ -71,7 +75,7 @@ pub use compatibility::{compatibility, reference_meeting};
 pub use dimension::estimator;
 pub use instances::{Draw, Instance};
 pub use landmarks::selector;
-pub use law::{Law, LawBroken};
+pub use law::{Failure, Failures, Findings, Law, LawBroken};
 pub use metric::metric;
 pub use motion::{MOST_DIMENSIONS, Motion, motions};
 pub use neighborhood::oracle;

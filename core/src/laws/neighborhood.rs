@@ -3,7 +3,7 @@
 use super::inputs::clouds;
 use super::reference::Scan;
 use super::settings::ensure;
-use super::{Law, LawBroken, Settings};
+use super::{Failures, Findings, Law, Settings};
 use crate::{MetricSpace, Neighbor, NeighborhoodOracle, PointCloud, Scalar};
 use proptest::prelude::*;
 
@@ -63,7 +63,34 @@ static PLACES: Law = Law {
                scaled or centered for the tree and not for the query",
 };
 
-pub(super) static ALL: [&Law; 6] = [&BUFFER, &STRICTNESS, &ORDER, &TIES, &BRUTE_FORCE, &PLACES];
+/// Indices alone.
+static INDICES: Law = Law {
+    subject: SUBJECT,
+    name: "indices",
+    says: "indices_within gives the points of within, each once, in the same order at every call; the former \
+           content of the buffer is dropped",
+    look_for: "a search that compares squares and does not measure again at the rim; the center, or copies of it, \
+               left out; an order that depends on the threads; a missing `out.clear()`",
+};
+
+/// Nearness.
+static NEARNESS: Law = Law {
+    subject: SUBJECT,
+    name: "nearness",
+    says: "is_near says whether within_of finds a point, and no where the space has no coordinates",
+    look_for: "a search that stops before it has measured a point at the rim; another strictness than that of within",
+};
+
+pub(super) static ALL: [&Law; 8] = [
+    &BUFFER,
+    &STRICTNESS,
+    &ORDER,
+    &TIES,
+    &BRUTE_FORCE,
+    &PLACES,
+    &INDICES,
+    &NEARNESS,
+];
 
 /// A query: about a point of the cloud, with the distance of another as its radius.
 #[derive(Clone, Debug)]
@@ -103,7 +130,7 @@ fn queries() -> impl Strategy<Value = Query> {
 /// it is given; they may be the same thing twice.
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold ([`Failures`]).
 ///
 /// ```
 /// use crosscap_core::laws::{self, Scan, Settings, StraightLine};
@@ -116,7 +143,8 @@ fn queries() -> impl Strategy<Value = Query> {
 pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
     settings: &Settings,
     build: impl Fn(&PointCloud<f64>) -> (M, O),
-) -> Result<(), LawBroken> {
+) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &ALL);
     let queries = queries();
     type Answers<S> = [Vec<Neighbor<S>>; 2];
     let junk = || {
@@ -156,7 +184,7 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
         _ => format!("nearest({}, {})", query.center, query.count),
     };
 
-    BUFFER.holds(settings, &queries, |query| {
+    found.put(BUFFER.holds(settings, &queries, |query| {
         let (radius, found, _) = asked(query, &junk());
         for (k, found) in found.iter().enumerate() {
             let question = question(k, radius, query);
@@ -168,8 +196,8 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             );
         }
         Ok(())
-    })?;
-    STRICTNESS.holds(settings, &queries, |query| {
+    }));
+    found.put(STRICTNESS.holds(settings, &queries, |query| {
         let (radius, [found, _], _) = asked(query, &[]);
         let question = question(0, radius, query);
         for n in &found {
@@ -187,8 +215,8 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             show(&found)
         );
         Ok(())
-    })?;
-    ORDER.holds(settings, &queries, |query| {
+    }));
+    found.put(ORDER.holds(settings, &queries, |query| {
         let (radius, found, _) = asked(query, &[]);
         for (k, found) in found.iter().enumerate() {
             let key = |n: &Neighbor<M::Scalar>| (n.distance.as_f64(), n.index);
@@ -196,11 +224,11 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             ensure!(sorted, "{} is {}", question(k, radius, query), show(found));
         }
         Ok(())
-    })?;
+    }));
     let distances = |n: &[Neighbor<M::Scalar>]| -> Vec<u64> {
         n.iter().map(|n| n.distance.as_f64().to_bits()).collect()
     };
-    TIES.holds(settings, &queries, |query| {
+    found.put(TIES.holds(settings, &queries, |query| {
         let (radius, [_, found], [_, expected]): (_, Answers<_>, Answers<_>) = asked(query, &[]);
         // Another set of distances is no matter of ties.
         ensure!(
@@ -211,8 +239,8 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             show(&expected)
         );
         Ok(())
-    })?;
-    BRUTE_FORCE.holds(settings, &queries, |query| {
+    }));
+    found.put(BRUTE_FORCE.holds(settings, &queries, |query| {
         let (metric, oracle) = build(&query.cloud);
         ensure!(
             oracle.len() == metric.len(),
@@ -231,8 +259,8 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             );
         }
         Ok(())
-    })?;
-    PLACES.holds(settings, &queries, |query| {
+    }));
+    found.put(PLACES.holds(settings, &queries, |query| {
         let (metric, oracle) = build(&query.cloud);
         let radius = radius_of(&metric, query);
         let place: Vec<M::Scalar> = (query.cloud.point(query.center).iter())
@@ -250,14 +278,55 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
             );
         }
         Ok(())
-    })
+    }));
+    found.put(INDICES.holds(settings, &queries, |query| {
+        let (metric, oracle) = build(&query.cloud);
+        let radius = radius_of(&metric, query);
+        let (mut first, mut again, mut near) = (vec![977; 3], vec![], vec![]);
+        oracle.indices_within(query.center, radius, &mut first);
+        oracle.indices_within(query.center, radius, &mut again);
+        ensure!(first == again, "asked twice: {first:?}, then {again:?}");
+        oracle.within(query.center, radius, &mut near);
+        let mut expected: Vec<u32> = near.iter().map(|n| n.index as u32).collect();
+        expected.sort_unstable();
+        first.sort_unstable();
+        ensure!(
+            first == expected,
+            "indices_within({}, {radius}) gives {first:?}, within {expected:?}",
+            query.center
+        );
+        Ok(())
+    }));
+    found.put(NEARNESS.holds(settings, &queries, |query| {
+        let (metric, oracle) = build(&query.cloud);
+        let radius = radius_of(&metric, query);
+        // The point itself, and a place between it and the one at the rim.
+        let (p, q) = (
+            query.cloud.point(query.center),
+            query.cloud.point(query.rim),
+        );
+        for share in [0.0, 0.5] {
+            let between = p.iter().zip(q).map(|(x, y)| x + share * (y - x));
+            let place: Vec<M::Scalar> = between.map(M::Scalar::of).collect();
+            let mut near = vec![];
+            let some = oracle.within_of(&place, radius, &mut near) && !near.is_empty();
+            let said = oracle.is_near(&place, radius);
+            ensure!(
+                said == some,
+                "is_near({place:?}, {radius}) is {said}, within_of finds {}",
+                show(&near)
+            );
+        }
+        Ok(())
+    }));
+    found.end()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::StraightLine;
     use super::super::reference::sort;
-    use super::super::twins::each_is_caught;
+    use super::super::twins::{each_is_caught, quick};
     use super::*;
 
     #[derive(Clone, Copy, PartialEq)]
@@ -271,6 +340,9 @@ mod tests {
         Forgetful,
         Rounded,
         WideAtPlaces,
+        InclusiveIndices,
+        KeptIndices,
+        NearAtRim,
     }
 
     struct Twin(Scan<StraightLine<f64>>, Fault);
@@ -320,6 +392,24 @@ mod tests {
                 self.0.nearest(center, count, out);
             }
         }
+        fn indices_within(&self, center: usize, radius: f64, out: &mut Vec<u32>) {
+            if self.1 != Fault::KeptIndices {
+                out.clear();
+            }
+            let mut near = vec![];
+            let wide = if self.1 == Fault::InclusiveIndices {
+                radius.next_up()
+            } else {
+                radius
+            };
+            self.within(center, wide, &mut near);
+            out.extend(near.iter().rev().map(|n| n.index as u32));
+        }
+        fn is_near(&self, place: &[f64], radius: f64) -> bool {
+            let d = |k: usize| crate::squared_distance(place, self.0.0.0.point(k)).sqrt();
+            let wide = self.1 == Fault::NearAtRim;
+            (0..self.len()).any(|k| d(k) < radius || wide && d(k) <= radius)
+        }
         fn within_of(&self, place: &[f64], radius: f64, out: &mut Vec<Neighbor<f64>>) -> bool {
             out.clear();
             for index in 0..self.len() {
@@ -333,8 +423,8 @@ mod tests {
         }
     }
 
-    fn put(fault: Fault) -> Result<(), LawBroken> {
-        oracle(&Settings::default(), |cloud| {
+    fn put(fault: Fault) -> Result<(), Failures> {
+        oracle(&quick(), |cloud| {
             let metric = StraightLine(cloud.clone());
             (metric.clone(), Twin(Scan(metric), fault))
         })
@@ -351,6 +441,9 @@ mod tests {
             (Fault::Forgetful, &BRUTE_FORCE),
             (Fault::Rounded, &BRUTE_FORCE),
             (Fault::WideAtPlaces, &PLACES),
+            (Fault::InclusiveIndices, &INDICES),
+            (Fault::KeptIndices, &INDICES),
+            (Fault::NearAtRim, &NEARNESS),
         ];
         each_is_caught(put, Fault::None, faults);
     }

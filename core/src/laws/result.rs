@@ -3,7 +3,7 @@
 use super::inputs::{cloud, ranks};
 use super::motion::{Motion, motions};
 use super::settings::ensure;
-use super::{Law, LawBroken, Settings};
+use super::{Failures, Findings, Law, LawBroken, Settings};
 use crate::{Complex, PointCloud};
 use proptest::prelude::*;
 use std::fmt::Debug;
@@ -84,6 +84,11 @@ pub(super) static ALL: [&Law; 7] = [
     &EULER_POINCARE,
 ];
 
+/// Laws of [`reconstruction()`].
+static INVARIANCES: [&Law; 3] = [&MOTION, &SCALE, &EMBEDDING];
+/// Laws of [`topology()`].
+static CHOICES: [&Law; 2] = [&SEED, &SEPARATION];
+
 /// Asks whether Betti numbers can be those of a complex.
 ///
 /// # Errors
@@ -122,7 +127,7 @@ pub fn euler_poincare(complex: &Complex, betti: [usize; 3]) -> Result<(), LawBro
 /// an answer. At most 16 motions of each kind are tried.
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold ([`Failures`]).
 ///
 /// ```
 /// use crosscap_core::laws::{self, Settings};
@@ -142,7 +147,8 @@ pub fn reconstruction<E: Debug>(
     settings: &Settings,
     points: &PointCloud<f64>,
     reconstruct: impl Fn(&PointCloud<f64>, f64) -> Result<Complex, E>,
-) -> Result<(), LawBroken> {
+) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &INVARIANCES);
     let settings = Settings {
         shrink_steps: settings.shrink_steps.min(64),
         ..settings.at_most(16)
@@ -176,16 +182,19 @@ pub fn reconstruction<E: Debug>(
         })
     };
     let n = points.dimension();
-    MOTION.holds(&settings, &motions(), |m| {
+    found.put(MOTION.holds(&settings, &motions(), |m| {
         compare(&m.image(points, n, 1.0), 1.0)
-    })?;
-    SCALE.holds(&settings, &(-6..=6_i32), |exponent| {
+    }));
+    found.put(SCALE.holds(&settings, &(-6..=6_i32), |exponent| {
         let factor = 10_f64.powi(*exponent);
         compare(&cloud(n, points.coordinates(), factor), factor)
-    })?;
-    EMBEDDING.holds(&settings, &(motions(), 1..=5_usize), |(m, more)| {
-        compare(&Motion::image(m, points, n + more, 1.0), 1.0)
-    })
+    }));
+    found.put(
+        EMBEDDING.holds(&settings, &(motions(), 1..=5_usize), |(m, more)| {
+            compare(&Motion::image(m, points, n + more, 1.0), 1.0)
+        }),
+    );
+    found.end()
 }
 
 /// Asks whether the Betti numbers of a surface are those of the surface, and not of the choices made on the
@@ -193,7 +202,7 @@ pub fn reconstruction<E: Debug>(
 /// all else as it was. A rejection counts as an answer. At most 16 of each are tried.
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold ([`Failures`]).
 ///
 /// ```
 /// use crosscap_core::laws::{self, Settings};
@@ -206,7 +215,8 @@ pub fn topology<E: Debug>(
     settings: &Settings,
     separations: RangeInclusive<f64>,
     betti: impl Fn(u64, f64) -> Result<[usize; 3], E>,
-) -> Result<(), LawBroken> {
+) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &CHOICES);
     let settings = Settings {
         shrink_steps: settings.shrink_steps.min(16),
         ..settings.at_most(16)
@@ -222,10 +232,11 @@ pub fn topology<E: Debug>(
         );
         Ok(())
     };
-    SEED.holds(&settings, &any::<u64>(), |&seed| compare(seed, finest))?;
-    SEPARATION.holds(&settings, &separations, |&separation| {
+    found.put(SEED.holds(&settings, &any::<u64>(), |&seed| compare(seed, finest)));
+    found.put(SEPARATION.holds(&settings, &separations, |&separation| {
         compare(0, separation)
-    })
+    }));
+    found.end()
 }
 
 /// Asks whether a quantity of a complex (its homology, a census, a verdict) is the same whatever the
@@ -273,14 +284,14 @@ pub fn relabelling<T: PartialEq + Debug>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::twins::catches;
+    use super::super::twins::{catches, quick};
     use super::*;
     use crate::{CurveEdge, Error};
 
     /// Joins points that are near; how near is what is spoiled.
-    fn put(near: fn(&PointCloud<f64>, usize, usize, f64) -> bool) -> Result<(), LawBroken> {
+    fn put(near: fn(&PointCloud<f64>, usize, usize, f64) -> bool) -> Result<(), Failures> {
         let points = PointCloud::new(2, vec![0.1, 0.0, 1.2, 0.3, 2.0, 1.0, 0.4, 1.9]).unwrap();
-        reconstruction(&Settings::default(), &points, |points, factor| {
+        reconstruction(&quick(), &points, |points, factor| {
             let pairs = (0..points.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
             let edges = pairs.filter(|&(a, b)| near(points, a, b, factor));
             let edges = edges.map(|(a, b)| CurveEdge::new(a as u32, b as u32, 0));
@@ -294,10 +305,7 @@ mod tests {
 
     #[test]
     fn an_invariant_reconstruction_passes() {
-        topology(&Settings::default(), 0.1..=0.2, |_, _| {
-            Ok::<_, Error>([1, 2, 1])
-        })
-        .unwrap();
+        topology(&quick(), 0.1..=0.2, |_, _| Ok::<_, Error>([1, 2, 1])).unwrap();
         put(|points, a, b, factor| distance(points, a, b) < 1.6 * factor).unwrap();
     }
 
@@ -313,18 +321,12 @@ mod tests {
         catches(by_space, &EMBEDDING);
         let lost =
             |seed: u64, _: f64| Ok::<_, Error>([1 + usize::from(!seed.is_multiple_of(7)), 0, 2]);
-        catches(topology(&Settings::default(), 0.1..=0.2, lost), &SEED);
+        catches(topology(&quick(), 0.1..=0.2, lost), &SEED);
         let closed = |_: u64, dl: f64| Ok::<_, Error>([1, usize::from(dl < 0.15), 0]);
-        catches(
-            topology(&Settings::default(), 0.1..=0.2, closed),
-            &SEPARATION,
-        );
+        catches(topology(&quick(), 0.1..=0.2, closed), &SEPARATION);
         let disc = Complex::new(5, vec![[0, 1, 2], [0, 2, 3], [0, 3, 4]], vec![]).unwrap();
         let at_zero = |c: &Complex, _: &[u32]| c.triangles.iter().filter(|t| t[0] == 0).count();
-        catches(
-            relabelling(&Settings::default(), &disc, at_zero),
-            &RELABELLING,
-        );
+        catches(relabelling(&quick(), &disc, at_zero), &RELABELLING);
         euler_poincare(&disc, [1, 0, 0]).unwrap();
         catches(euler_poincare(&disc, [1, 1, 0]), &EULER_POINCARE);
     }

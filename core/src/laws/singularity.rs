@@ -3,8 +3,8 @@
 use super::instances::{Draw, Instance};
 use super::motion::{Motion, motions};
 use super::settings::{Outcome, ensure};
-use super::{Law, LawBroken, Settings};
-use crate::{Decomposition, Rejection, SingularityModel};
+use super::{Failures, Findings, Law, Settings};
+use crate::{Decomposition, LocalPoints, Rejection, SingularityModel};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::ops::RangeInclusive;
@@ -15,11 +15,13 @@ const SUBJECT: &str = "SingularityModel";
 static PARTITION: Law = Law {
     subject: SUBJECT,
     name: "partition",
-    says: "every point has exactly one label, which names a stratum; strata come in order of their \
-           dimension; continuations name two different cells; every curve has its number of cells; all \
-           numbers are numbers; poor data are rejected or decomposed, without a panic",
+    says: "what is said can be true (`Decomposition::check`): every point has exactly one label, which names a \
+           stratum; strata come in order of their dimension; every curve has its number of cells, of those there \
+           are; points lie in the neighborhood; the center is where its label and its offset say; poor data are \
+           rejected or decomposed, without a panic",
     look_for: "labels of the fitted rows alone (those behind are labelled too); a curve that comes after \
-               the cells; a division by the number of points; indices taken of rows that are not there",
+               the cells; a place in other coordinates than those of the points, or of a fit that ran away; an \
+               offset from the mean instead of the center; a division by the number of points",
 };
 
 /// Motion.
@@ -52,6 +54,26 @@ static FITTED: Law = Law {
                counts of a stratum",
 };
 
+/// Rows about the center.
+static ABOUT: Law = Law {
+    subject: SUBJECT,
+    name: "about",
+    says: "decompose_about gives the decomposition of decompose, and of every row, or None, what decompose says with \
+           that row as the center, within rounding",
+    look_for: "a place of the center given to all rows; answers in another order than the rows, or fewer; the \
+               offset of a row measured from the center; a fit that depends on the center (leave the default)",
+};
+
+/// Cells at curves.
+static CELLS: Law = Law {
+    subject: SUBJECT,
+    name: "cells",
+    says: "on an exact instance, all cells that come near to a curve, away from its ends, are counted in \
+           cells_at_curve",
+    look_for: "the number of another curve (the order is that of `strata`); the number of sheets where that of the \
+               cells is meant: two sheets that cross are four cells; a curve taken for one that no surface touches",
+};
+
 /// Exact data.
 static EXACT: Law = Law {
     subject: SUBJECT,
@@ -82,7 +104,9 @@ static TRUTH: Law = Law {
                strata of the instance that the model does not tell apart (leave them out of `truth`)",
 };
 
-pub(super) static ALL: [&Law; 7] = [&PARTITION, &MOTION, &ORDER, &FITTED, &EXACT, &NOISE, &TRUTH];
+pub(super) static ALL: [&Law; 9] = [
+    &PARTITION, &MOTION, &ORDER, &FITTED, &ABOUT, &EXACT, &NOISE, &CELLS, &TRUTH,
+];
 
 /// Exact instances of what a model describes, given by its author.
 pub struct Instances<'a> {
@@ -123,64 +147,49 @@ struct Case {
 
 type Answer = Result<Decomposition, Rejection>;
 
-/// Whether a decomposition is one, of so many points in so many coordinates.
-fn well_formed(d: &Decomposition, points: usize, dimension: usize) -> Outcome {
+/// Whether what a model says can be true.
+fn well_formed(d: &Decomposition, instance: &Instance, model: &impl SingularityModel) -> Outcome {
+    (d.check(&instance.local())).map_err(|wrong| format!("{}: {}", wrong.law, wrong.found))?;
     ensure!(
-        d.labels.len() == points,
-        "{} labels for {points} points",
-        d.labels.len()
+        !model.finds_boundary() || d.cells_at_curve.iter().all(|&cells| cells == 1),
+        "{:?} cells at the curves of a model that finds boundaries, which have one",
+        d.cells_at_curve
     );
-    let strata = d.strata.len();
-    let wild = d.labels.iter().position(|&l| l as usize >= strata);
-    ensure!(
-        wild.is_none(),
-        "the label {:?} of point {wild:?} names none of {strata} strata",
-        wild.map(|k| d.labels[k])
-    );
-    let dimensions: Vec<u8> = d.strata.iter().map(|s| s.dimension).collect();
-    ensure!(
-        dimensions.is_sorted() && dimensions.iter().all(|&d| d <= 2),
-        "the strata have the dimensions {dimensions:?}"
-    );
-    let is_cell = |c: u8| dimensions.get(c as usize) == Some(&2);
-    let pair = d
-        .continuations
-        .iter()
-        .find(|c| !is_cell(c.0) || !is_cell(c.1) || c.0 == c.1);
-    ensure!(
-        pair.is_none(),
-        "the continuation {pair:?} is no pair of cells"
-    );
-    let curves = dimensions.iter().filter(|&&d| d == 1).count();
-    ensure!(
-        d.cells_at_curve.len() == curves,
-        "{} numbers of cells for {curves} curves",
-        d.cells_at_curve.len()
-    );
-    let points = dimensions.iter().filter(|&&d| d == 0).count();
-    ensure!(
-        d.points.len() == points
-            && d.points
-                .iter()
-                .all(|p| p.len() == dimension && p.iter().all(|x| x.is_finite())),
-        "the places {:?} for {points} strata of dimension 0, in {dimension} coordinates",
-        d.points
-    );
-    ensure!(
-        d.residual >= 0.0 && d.residual.is_finite(),
-        "the residual is {}",
-        d.residual
-    );
-    ensure!(
-        d.center.len() == dimension && d.center.iter().all(|x| x.is_finite()),
-        "the center is {:?}, in {dimension} coordinates",
-        d.center
-    );
-    ensure!(
-        d.center_offset >= 0.0,
-        "the center offset is {}",
-        d.center_offset
-    );
+    Ok(())
+}
+
+/// Rows of a curve nearer than this share of the radius to a stratum of dimension 0 say nothing about its cells.
+const CLEAR_OF_POINTS: f64 = 0.5;
+/// A cell with a point this close to a curve, as a share of the radius, meets it.
+const NEAR_CURVE: f64 = 0.2;
+
+/// Whether the cells near a curve are no more than are said to meet in it.
+fn cells_are_counted(d: &Decomposition, instance: &Instance) -> Outcome {
+    let local = instance.local();
+    let far = |a: &[f64], b: &[f64], share: f64| {
+        crate::squared_distance(a, b) > (share * instance.radius).powi(2)
+    };
+    for curve in 0..d.strata.len() as u8 {
+        let Some(said) = d.cells_at(curve) else {
+            continue;
+        };
+        let mut near = [false; 256];
+        for k in (0..local.fitted).filter(|&k| d.labels[k] == curve) {
+            let own = local.point(k);
+            if !d.points.iter().all(|p| far(p, own, CLEAR_OF_POINTS)) {
+                continue;
+            }
+            for (other, &label) in d.labels.iter().enumerate() {
+                near[usize::from(label)] |=
+                    d.dimension_of(other) == 2 && !far(local.point(other), own, NEAR_CURVE);
+            }
+        }
+        let found: Vec<usize> = (0..256).filter(|&label| near[label]).collect();
+        ensure!(
+            found.len() <= usize::from(said),
+            "{said} cells at the curve {curve}, points of the cells {found:?} are near it"
+        );
+    }
     Ok(())
 }
 
@@ -248,27 +257,7 @@ fn same(
             dimensions.1
         );
     }
-    // Continuations and curves of strata without points have no names to go by.
-    let sorted = |(x, y): (u8, u8)| (x.min(y), x.max(y));
-    let mut before: Vec<(u8, u8)> = a
-        .continuations
-        .iter()
-        .filter_map(|&(x, y)| Some(sorted((names[x as usize]?, names[y as usize]?))))
-        .collect();
-    let known = |c: &&(u8, u8)| back[c.0 as usize].is_some() && back[c.1 as usize].is_some();
-    let mut after: Vec<(u8, u8)> = b
-        .continuations
-        .iter()
-        .filter(known)
-        .copied()
-        .map(sorted)
-        .collect();
-    before.sort_unstable();
-    after.sort_unstable();
-    ensure!(
-        before == after,
-        "continuations {before:?} (in the later names) became {after:?}"
-    );
+    // Curves without points have no names to go by.
     let first_curve = |d: &Decomposition| d.strata.iter().filter(|s| s.dimension == 0).count();
     let (skip_a, skip_b) = (first_curve(a), first_curve(b));
     for (k, &cells) in a.cells_at_curve.iter().enumerate() {
@@ -280,13 +269,64 @@ fn same(
     Ok(())
 }
 
+/// Whether a model says of rows what it says of them as the center.
+fn about(model: &impl SingularityModel, instance: &Instance, rows: &[usize]) -> Outcome {
+    let local = instance.local();
+    let (whole, together) = (model.decompose(&local), model.decompose_about(&local, rows));
+    let (fit, located) = match (whole, together) {
+        (Ok(whole), Ok((fit, located))) => {
+            ensure!(
+                fit == whole,
+                "{whole:?} alone, {fit:?} with the rows {rows:?}"
+            );
+            (fit, located)
+        }
+        (whole, together) => {
+            let (alone, with_rows) = (whole.err(), together.err());
+            ensure!(
+                alone == with_rows,
+                "rejected with {alone:?} alone, with {with_rows:?} with the rows {rows:?}"
+            );
+            return Ok(());
+        }
+    };
+    well_formed(&fit, instance, model)?;
+    ensure!(
+        located.len() == rows.len(),
+        "{} answers for the rows {rows:?}",
+        located.len()
+    );
+    for (&row, found) in rows.iter().zip(&located) {
+        let Some(found) = found else { continue };
+        let own = LocalPoints {
+            center: row,
+            ..local
+        };
+        (found.check(own.point(row), local.radius))
+            .map_err(|wrong| format!("of row {row}: {}: {}", wrong.law, wrong.found))?;
+        // As the center it may be rejected: it need not be where the model is to be asked.
+        let Ok(alone) = model.decompose(&own).map(|fit| fit.located(row)) else {
+            continue;
+        };
+        let close = |x: f64, y: f64| x == y || (x - y).abs() <= 1e-6 * local.radius;
+        let places = found.place.iter().zip(&alone.place);
+        ensure!(
+            (found.dimension, found.cells) == (alone.dimension, alone.cells)
+                && close(found.offset, alone.offset)
+                && places.into_iter().all(|(&x, &y)| close(x, y)),
+            "row {row} is {found:?}, as the center {alone:?}"
+        );
+    }
+    Ok(())
+}
+
 /// Puts a model through its laws: on exact and noisy instances given by its author, and on poor data
 /// (few points, copies, lattices) where it must not stumble.
 ///
 /// `model` must accept the instances: choose its thresholds for the radius that they have.
 ///
 /// # Errors
-/// The first law that does not hold.
+/// The laws that do not hold ([`Failures`]).
 ///
 /// ```
 /// use crosscap_core::laws::{self, Instances, Settings, instances};
@@ -315,7 +355,8 @@ pub fn model(
     settings: &Settings,
     model: &impl SingularityModel,
     instances: &Instances<'_>,
-) -> Result<(), LawBroken> {
+) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &ALL);
     let dimension = model.local_dimension();
     let settings = &settings.at_most(256);
     let cases = |noise: f64| {
@@ -348,7 +389,7 @@ pub fn model(
     let ask = |instance: &Instance| {
         let answer = model.decompose(&instance.local());
         if let Ok(d) = &answer {
-            well_formed(d, instance.len(), dimension)?;
+            well_formed(d, instance, model)?;
         }
         Ok::<Answer, String>(answer)
     };
@@ -359,7 +400,7 @@ pub fn model(
         any::<bool>(),
         1..=30_usize,
     );
-    PARTITION.holds(settings, &poor, |(rows, far, fitted)| {
+    found.put(PARTITION.holds(settings, &poor, |(rows, far, fitted)| {
         let rows: Vec<_> = rows
             .iter()
             .map(|row| {
@@ -380,11 +421,11 @@ pub fn model(
             instance.fitted = rows.len();
         }
         ask(&instance.principal()).map(|_| ())
-    })?;
-    PARTITION.holds(settings, &noisy, |case| {
+    }));
+    found.put(PARTITION.holds(settings, &noisy, |case| {
         ask(&draw(case)?.principal()).map(|_| ())
-    })?;
-    MOTION.holds(settings, &noisy, |case| {
+    }));
+    found.put(MOTION.holds(settings, &noisy, |case| {
         let raw = draw(case)?;
         let first = raw.principal();
         // Signs by themselves, to the bit.
@@ -424,9 +465,9 @@ pub fn model(
             same(&before, &ask(&moved)?, all(), &signs, raw.radius)?;
         }
         Ok(())
-    })?;
+    }));
     let keys = vec(any::<u16>(), 512);
-    ORDER.holds(
+    found.put(ORDER.holds(
         settings,
         &(cases(4.0 * instances.noise), keys),
         |(case, keys)| {
@@ -435,18 +476,28 @@ pub fn model(
             let pairs = order.iter().enumerate().map(|(new, &old)| (old, new));
             same(&ask(&first)?, &ask(&other)?, pairs, &[], first.radius)
         },
-    )?;
-    FITTED.holds(settings, &noisy, |case| {
+    ));
+    found.put(FITTED.holds(settings, &noisy, |case| {
         let all = draw(case)?.principal();
         let mut alone = all.clone();
         alone.coordinates.truncate(all.fitted * dimension);
         alone.truth.truncate(all.fitted);
         let pairs = (0..all.fitted).map(|k| (k, k));
         same(&ask(&all)?, &ask(&alone)?, pairs, &[], all.radius)
-    })?;
+    }));
+    let some = vec(any::<prop::sample::Index>(), 1..=6);
+    found.put(ABOUT.holds(
+        settings,
+        &(cases(4.0 * instances.noise), some),
+        |(case, rows)| {
+            let instance = draw(case)?.principal();
+            let rows: Vec<usize> = rows.iter().map(|k| k.index(instance.len())).collect();
+            about(model, &instance, &rows)
+        },
+    ));
     let exact = cases(0.0);
     let accepted = |instance: &Instance| ask(instance)?.map_err(|r| format!("rejected with {r:?}"));
-    EXACT.holds(settings, &exact, |case| {
+    found.put(EXACT.holds(settings, &exact, |case| {
         let instance = draw(&Case {
             noise: 0.0,
             ..case.clone()
@@ -459,8 +510,8 @@ pub fn model(
             "the residual is {residual}, above {limit}"
         );
         Ok(())
-    })?;
-    NOISE.holds(settings, &exact, |case| {
+    }));
+    found.put(NOISE.holds(settings, &exact, |case| {
         let mut before = 0.0;
         for noise in [1.0, 2.0, 4.0].map(|k| k * instances.noise) {
             let instance = draw(&Case {
@@ -484,8 +535,16 @@ pub fn model(
             before = d.residual;
         }
         Ok(())
-    })?;
-    TRUTH.holds(settings, &exact, |case| {
+    }));
+    found.put(CELLS.holds(settings, &exact, |case| {
+        let instance = draw(&Case {
+            noise: 0.0,
+            ..case.clone()
+        })?
+        .principal();
+        cells_are_counted(&accepted(&instance)?, &instance)
+    }));
+    found.put(TRUTH.holds(settings, &exact, |case| {
         let instance = draw(&Case { noise: 0.0, ..case.clone() })?.principal();
         let d = accepted(&instance)?;
         let mut label_of = [None; 256];
@@ -509,20 +568,27 @@ pub fn model(
             );
         }
         Ok(())
-    })
+    }));
+    found.end()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::instances::flat_sheet;
-    use super::super::twins::each_is_caught;
+    use super::super::twins::{each_is_caught, quick};
     use super::*;
-    use crate::{LocalPoints, Stratum};
+    use crate::{Located, Stratum};
 
     #[derive(Clone, Copy, PartialEq)]
     enum Fault {
         None,
         WildLabel,
+        FarPlace,
+        NoCells,
+        NineCells,
+        LostRow,
+        CenterForAll,
+        UncountedCell,
         FittedLabels,
         CurvesLast,
         Unchecked,
@@ -565,9 +631,23 @@ mod tests {
             let mut labels = vec![1; local.len()];
             let mut strata = vec![Stratum { dimension: 1 }, Stratum { dimension: 2 }];
             let mut center = local.point(local.center).to_vec();
+            let (mut cells, mut offset) = (1, f64::INFINITY);
             let norm = |k: usize| local.point(k).iter().map(|x| x * x).sum::<f64>().sqrt();
             match self.0 {
                 Fault::WildLabel => labels[0] = 2,
+                Fault::FarPlace => center[0] += 5.0 * radius,
+                Fault::NineCells => cells = 9,
+                Fault::NoCells => {
+                    // Two cells, and a curve that none of them meets.
+                    strata.push(Stratum { dimension: 2 });
+                    cells = 0;
+                }
+                Fault::UncountedCell => {
+                    cells = 0;
+                    for (k, label) in labels.iter_mut().enumerate() {
+                        *label = u8::from(norm(k) > 0.2 * radius);
+                    }
+                }
                 Fault::FittedLabels => labels.truncate(fitted),
                 Fault::CurvesLast => {
                     strata.reverse();
@@ -583,6 +663,7 @@ mod tests {
                 Fault::NoResidual => residual = 0.0,
                 Fault::TwoCells => {
                     strata.push(Stratum { dimension: 2 });
+                    cells = 2;
                     for (k, label) in labels.iter_mut().enumerate() {
                         *label = 1 + u8::from(norm(k) > 0.6 * radius);
                     }
@@ -590,17 +671,45 @@ mod tests {
                 Fault::Refusing if heights < 1e-12 => return Err(Rejection::NoRealSolution),
                 _ => {}
             }
+            let own = labels.get(local.center).map(|&l| usize::from(l));
+            if own.and_then(|l| strata.get(l)) == Some(&Stratum { dimension: 1 }) {
+                offset = 0.0;
+            }
             Ok(Decomposition {
                 strata,
                 labels,
-                continuations: vec![],
-                cells_at_curve: vec![1],
+                cells_at_curve: vec![cells],
                 residual,
                 parameters: 3,
                 points: Vec::new(),
                 center,
-                center_offset: f64::INFINITY,
+                center_offset: offset,
             })
+        }
+        fn decompose_about(
+            &self,
+            local: &LocalPoints<'_>,
+            rows: &[usize],
+        ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
+            let fit = self.decompose(local)?;
+            let located = rows.iter().map(|&row| {
+                let as_center = LocalPoints {
+                    center: row,
+                    ..*local
+                };
+                let fit = self.decompose(&as_center).ok()?;
+                (row < fit.labels.len()).then(|| fit.located(row))
+            });
+            let mut located: Vec<Option<Located>> = located.collect();
+            match self.0 {
+                Fault::LostRow => drop(located.pop()),
+                Fault::CenterForAll => {
+                    let center = fit.located(local.center);
+                    located.fill(Some(center));
+                }
+                _ => {}
+            }
+            Ok((fit, located))
         }
         fn name(&self) -> &str {
             "twin"
@@ -609,15 +718,15 @@ mod tests {
 
     #[test]
     fn every_fault_is_caught_by_its_law() {
-        let put = |fault| {
-            model(
-                &Settings::default(),
-                &Twin(fault),
-                &Instances::new(&flat_sheet),
-            )
-        };
+        let put = |fault| model(&quick(), &Twin(fault), &Instances::new(&flat_sheet));
         let faults: &[(Fault, &Law)] = &[
             (Fault::WildLabel, &PARTITION),
+            (Fault::FarPlace, &PARTITION),
+            (Fault::NoCells, &PARTITION),
+            (Fault::NineCells, &PARTITION),
+            (Fault::LostRow, &ABOUT),
+            (Fault::CenterForAll, &ABOUT),
+            (Fault::UncountedCell, &CELLS),
             (Fault::FittedLabels, &PARTITION),
             (Fault::CurvesLast, &PARTITION),
             (Fault::Unchecked, &PARTITION),
