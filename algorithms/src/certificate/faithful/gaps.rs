@@ -370,7 +370,7 @@ impl<'a> Search<'a> {
                 }
             }
             for chain in &members {
-                let (mut gap, counted) = self.measured(chain, radius, tiles, middles);
+                let (mut gap, counted) = self.measured(chain, tiles, middles);
                 let random = (level.radius / radius).powi(2);
                 let measure = chance::known(gap.expected * random, counted);
                 gap.p = level.chain(self.points() as f64, measure);
@@ -380,7 +380,7 @@ impl<'a> Search<'a> {
     }
 
     /// A chain as a gap, and the number of points around that its density is counted from. Its probability is left to the caller.
-    fn measured(&self, chain: &[u32], radius: f64, tiles: &[Empty], middles: &[f64]) -> (Gap, f64) {
+    fn measured(&self, chain: &[u32], tiles: &[Empty], middles: &[f64]) -> (Gap, f64) {
         let width = self.mesh.vertices.dimension();
         let at = |k: u32| &middles[k as usize * width..(k as usize + 1) * width];
         let places: Vec<f64> = chain.iter().flat_map(|&k| at(k).iter().copied()).collect();
@@ -403,16 +403,21 @@ impl<'a> Search<'a> {
                     [1.0 / 3.0; 3],
                 )
                 .sqrt();
-        // empty for certain: the least of the discs
-        let reach = chain
+        // the empty discs about the tiles
+        let discs: Vec<f64> = chain
             .iter()
             .map(|&k| {
                 let tile = &tiles[k as usize];
                 let corner = self.mesh.complex.triangles[tile.triangle as usize];
-                radius / self.ground.density_at(corner, tile.weights).sqrt()
+                tile.away / self.ground.density_at(corner, tile.weights).sqrt()
             })
-            .fold(f64::INFINITY, f64::min);
-        let inside = |p: &[f64]| tree.any_within(p, reach, |_, _| true);
+            .collect();
+        let reach = discs.iter().copied().fold(0.0, f64::max);
+        let inside = |p: &[f64]| {
+            tree.any_within(p, reach, |k, square| {
+                square < discs[k as usize] * discs[k as usize]
+            })
+        };
         let near = |t: u32| {
             let shape = Shape::new(corners(self.mesh, t));
             let mut place = vec![0.0; width];
@@ -488,6 +493,12 @@ impl<'a> Search<'a> {
         let mut seen: BTreeSet<u32> = from.iter().copied().collect();
         let mut ring: Vec<u32> = seen.iter().copied().collect();
         let mut all = Count::default();
+        // rings that are denser by chance would be taken for another density
+        let (least, wanted) = if self.varies {
+            (LEAST_AROUND, wanted)
+        } else {
+            (f64::INFINITY, 2.0 * wanted)
+        };
         while !ring.is_empty() {
             let mut own = Count::default();
             for &t in &ring {
@@ -496,7 +507,7 @@ impl<'a> Search<'a> {
                 own.points += f64::from(self.ground.counts[t as usize]);
                 own.ground += self.part(t, 1.0 / density.sqrt(), &counts);
             }
-            if !all.take(own, LEAST_AROUND, wanted) || all.points >= wanted {
+            if !all.take(own, least, wanted) || all.points >= wanted {
                 break;
             }
             let mut next = Vec::new();
