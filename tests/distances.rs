@@ -85,7 +85,12 @@ fn distances_of_no_points_are_taken_as_they_are() {
         assert!(outcome.is_verified(), "{}", outcome.certificate);
         assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
         assert!(!outcome.report.given.as_ref().unwrap().exact);
-        let unchecked = [Level::Geometry, Level::Cover, Level::Quality];
+        let unchecked = [
+            Level::Geometry,
+            Level::Cover,
+            Level::Faithful,
+            Level::Quality,
+        ];
         assert_eq!(outcome.certificate.unchecked(), unchecked);
         assert!(
             outcome

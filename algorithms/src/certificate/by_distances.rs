@@ -52,6 +52,7 @@ pub fn certify_by_distances<S: Scalar>(
         links: None,
         geometry: None,
         cover: None,
+        faithful: None,
         quality: None,
         by_distances: None,
     };

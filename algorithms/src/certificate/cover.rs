@@ -1,13 +1,11 @@
 //! Fifth level: mesh and points are near each other, both ways.
 
-use super::distance::point_triangle;
-use super::frame::Frame;
+use super::faithful::Search;
 use super::geometry::corners;
 use super::quality::quantile;
-use super::tree::Tree;
 use super::{CertificateOptions, Place, Violation, ViolationKind, within};
 use crate::balls::BallTree;
-use crosscap_core::{Mesh, PointCloud, squared_distance};
+use crosscap_core::{Mesh, squared_distance};
 use serde::Serialize;
 
 /// A distribution of distances, in units of the landmark separation.
@@ -42,10 +40,10 @@ pub struct CoverReport {
     pub landmark_separation: f64,
     /// Whether it was given; otherwise it is guessed as 3/4 of the median edge.
     pub separation_given: bool,
-    /// Median distance of an input point to its nearest other point, in dl.
+    /// Median over the vertices of the local spacing of the input points, 1 / sqrt(density), in dl.
     pub point_spacing: f64,
-    /// Radius of the largest ball around a place of the surface that may hold no input
-    /// point, estimated from the nearest-neighbor distances, in dl.
+    /// Radius of the largest empty disc that a sample like this one has where its spacing is the
+    /// median, in dl. Elsewhere it is larger and smaller with the local spacing.
     pub point_gap: f64,
     /// Input points to the mesh, in dl.
     pub points_to_mesh: Option<Distances>,
@@ -69,42 +67,13 @@ fn mix(k: u64) -> u64 {
 }
 
 /// At most `budget` of `0..n`, one out of each of `budget` equal stretches.
-fn picks(n: usize, budget: usize) -> impl Iterator<Item = usize> {
+pub(super) fn picks(n: usize, budget: usize) -> impl Iterator<Item = usize> {
     let budget = budget.min(n);
     (0..budget).map(move |k| {
         let cut = |k: usize| (k as u128 * n as u128 / budget as u128) as usize;
         let (from, to) = (cut(k), cut(k + 1));
         from + (mix(k as u64) % (to - from) as u64) as usize
     })
-}
-
-/// Spacing and gap of the points: the median distance to the nearest other point, and the
-/// radius of the largest hole that a good sample of this kind has.
-///
-/// For points of density r scattered at random over a surface the median is sqrt(ln 2 / (pi r))
-/// and the largest of about n independent holes is sqrt(ln n / (pi r)). For points chosen with a
-/// least distance, as many as fit, no hole is larger than that distance. How the low quantiles
-/// compare with the median tells the two apart.
-fn spacing(points: &PointCloud<f64>, tree: &BallTree) -> (f64, f64) {
-    let mut near: Vec<f64> = picks(points.len(), 3000)
-        .filter_map(|p| {
-            // not the point itself, nor its copies
-            let found = tree.nearest(points.point(p), |d| d > 0.0);
-            found.map(|(_, d)| d.sqrt())
-        })
-        .collect();
-    near.sort_unstable_by(f64::total_cmp);
-    let median = quantile(&near, 0.5);
-    if median == 0.0 {
-        return (0.0, 0.0);
-    }
-    let random = ((points.len().max(2) as f64).ln() / std::f64::consts::LN_2).sqrt();
-    let evenness = quantile(&near, 0.05) / median;
-    let scattered = ((0.9 - evenness) / (0.9 - 0.27)).clamp(0.0, 1.0);
-    (
-        median,
-        median * (1.15 + (random - 1.15).max(0.0) * scattered),
-    )
 }
 
 /// Barycentric steps of a triangle whose sides are sampled at the latter's middle at least.
@@ -119,8 +88,7 @@ fn steps(corners: [&[f64]; 3], separation: f64) -> usize {
 
 pub(super) fn check(
     mesh: &Mesh,
-    frame: &Frame,
-    tree: &Tree,
+    search: Option<&Search<'_>>,
     bare: &[[u32; 2]],
     median_edge: f64,
     options: &CertificateOptions<'_>,
@@ -152,7 +120,7 @@ pub(super) fn check(
             .violations
             .extend(violation.map(|v| v.measured(options.unused_landmarks.len() as f64, allowed)));
     }
-    let Some(points) = options.points.filter(|p| !p.is_empty()) else {
+    let (Some(points), Some(search)) = (options.points.filter(|p| !p.is_empty()), search) else {
         return report;
     };
     if separation <= 0.0 {
@@ -164,25 +132,10 @@ pub(super) fn check(
     // points to mesh
     let count = mesh.complex.triangles.len();
     let limit = limits.points_to_mesh + noise;
-    let (mut values, mut far) = (Vec::new(), Vec::new());
-    for p in picks(points.len(), limits.points_tested) {
-        let row = points.point(p);
-        let nearest = tree.nearest(&frame.spot(row), frame.slack, f64::INFINITY, |item| {
-            let item = item as usize;
-            let [a, b, c] = if item < count {
-                corners(mesh, item as u32)
-            } else {
-                let [a, b] = bare[item - count];
-                [a, b, b].map(|v| mesh.vertices.point(v as usize))
-            };
-            point_triangle(row, a, b, c)
-        });
-        let d = nearest.map_or(f64::INFINITY, |(_, d)| d.sqrt() / separation);
-        if !within(d, limit) {
-            far.push(Place::Point(p));
-        }
-        values.push(d);
-    }
+    let feet = search.feet;
+    let values: Vec<f64> = feet.heights.iter().map(|h| h / separation).collect();
+    let far = (0..feet.len()).filter(|&i| !within(values[i], limit));
+    let far = far.map(|i| Place::Point(feet.rows[i] as usize)).collect();
     let distances = Distances::of(values);
     report.violations.extend(
         Violation::at(ViolationKind::UncoveredPoints, far, |p| match p {
@@ -195,17 +148,25 @@ pub(super) fn check(
 
     // mesh to points
     let cloud = BallTree::new(points.dimension(), points.coordinates());
-    let (median, gap) = spacing(points, &cloud);
-    report.point_spacing = median / separation;
-    report.point_gap = gap / separation;
+    report.point_spacing = search.spacing() / separation;
+    report.point_gap = search.gap() / separation;
     let nearest = |row: &[f64]| cloud.nearest(row, |_| true);
-    let away_limit = limits.mesh_to_points + noise + report.point_gap;
     let off_limit = limits.off_plane + noise;
     let (mut values, mut off_values) = (Vec::new(), Vec::new());
     let (mut far, mut off) = (Vec::new(), Vec::new());
+    // the value and the limit of the place that is furthest beyond its limit
+    let mut worst = (0.0, f64::INFINITY);
+    // whether a place is too far from the points, where gaps of that radius are likely
+    let mut too_far = |d: f64, gap: f64| {
+        let limit = limits.mesh_to_points + noise + gap / separation;
+        if worst.1 == f64::INFINITY || d - limit > worst.0 - worst.1 {
+            worst = (d, limit);
+        }
+        !within(d, limit)
+    };
     for v in 0..mesh.complex.vertices {
         let d = nearest(mesh.vertices.point(v)).map_or(0.0, |n| n.1.sqrt() / separation);
-        if !within(d, away_limit) {
+        if too_far(d, search.gap_at_vertex(v as u32)) {
             far.push(Place::Vertex(v as u32));
         }
         values.push(d);
@@ -213,6 +174,7 @@ pub(super) fn check(
     let n = points.dimension();
     let mut place = vec![0.0; n];
     let mut seen: Vec<[u32; 2]> = Vec::new();
+    let curve_gap = search.curve_gap(bare);
     for &[a, b] in bare {
         let (p, q) = (
             mesh.vertices.point(a as usize),
@@ -225,7 +187,7 @@ pub(super) fn check(
                 place[k] = p[k] * (1.0 - t) + q[k] * t;
             }
             let d = nearest(&place).map_or(0.0, |n| n.1.sqrt() / separation);
-            if !within(d, away_limit) && seen.last() != Some(&[a, b]) {
+            if too_far(d, curve_gap) && seen.last() != Some(&[a, b]) {
                 seen.push([a, b]);
                 far.push(Place::Edge([a, b]));
             }
@@ -237,13 +199,14 @@ pub(super) fn check(
         let pieces = steps(c, separation);
         let mut triangle_far = false;
         let mut triangle_off = 0.0_f64;
+        let gap = search.gap_at(t);
         let mut weigh = |weights: [f64; 3], inner: bool| {
             for k in 0..n {
                 place[k] = weights[0] * c[0][k] + weights[1] * c[1][k] + weights[2] * c[2][k];
             }
             if let Some((q, d)) = nearest(&place) {
                 let d = d.sqrt() / separation;
-                triangle_far |= !within(d, away_limit);
+                triangle_far |= too_far(d, gap);
                 values.push(d);
                 if inner {
                     let row = points.point(q as usize);
@@ -276,7 +239,7 @@ pub(super) fn check(
     let at = |p: Place| super::coordinates(mesh, p);
     report.violations.extend(
         Violation::at(ViolationKind::MeshFarFromPoints, far, at)
-            .map(|v| v.measured(distances.max, away_limit)),
+            .map(|v| v.measured(worst.0, worst.1)),
     );
     report.violations.extend(
         Violation::at(ViolationKind::MeshOffPoints, off, at)

@@ -65,6 +65,9 @@ impl fmt::Display for Certificate {
             distances(f, "mesh to points", c.mesh_to_points.as_ref())?;
             distances(f, "points off planes", c.mesh_off_points.as_ref())?;
         }
+        if let Some(told) = &self.faithful {
+            write!(f, "\nfaithful   {told}")?;
+        }
         if let Some(q) = &self.quality {
             let twisted = q.cells.iter().filter(|c| !c.orientable).count();
             write!(

@@ -10,6 +10,7 @@
 //! | links | every vertex looks like a point of a surface that may cross itself | [`LinkReport`] |
 //! | geometry | no folds, no overlaps, no crossings off the declared curves | [`GeometryReport`] |
 //! | cover | mesh and points are near each other, all landmarks are used | [`CoverReport`] |
+//! | faithful | no gap of the points is bridged, in units of their local spacing | [`FaithfulReport`] |
 //! | quality | no needles; figures for the reader | [`QualityReport`] |
 //!
 //! Nothing here knows the true surface. What cannot be decided without it (the right Betti
@@ -21,6 +22,7 @@ mod crossing;
 mod display;
 mod distance;
 mod edges;
+mod faithful;
 mod frame;
 mod geometry;
 mod incidence;
@@ -38,6 +40,7 @@ pub use by_distances::{DistanceReport, certify_by_distances};
 pub use cover::{CoverReport, Distances};
 pub use crosscap_core::{Link, LinkKind};
 pub use edges::EdgeReport;
+pub use faithful::{FaithfulReport, Gap, Merged, Offset};
 pub use geometry::GeometryReport;
 pub use indices::IndexReport;
 pub use links::{LinkReport, SpecialPoint};
@@ -45,6 +48,9 @@ pub use quality::{Cell, QualityReport, Spread};
 pub use violation::{Level, Place, Verdict, Violation, ViolationKind};
 
 use crosscap_core::{Mesh, PointCloud};
+use faithful::Search;
+use faithful::footprints::Footprints;
+use faithful::ground::Ground;
 use serde::Serialize;
 
 /// Thresholds of the certificate. A value at the limit is allowed.
@@ -87,6 +93,12 @@ pub struct Limits {
     pub unused_landmarks: f64,
     /// How many input points are looked up in the mesh at most; picked evenly and always alike.
     pub points_tested: usize,
+    /// Probability of a false alarm, over the whole cloud, at which a finding about the points is
+    /// held for no chance. Whoever tries k times until a mesh passes divides it by k.
+    pub significance: f64,
+    /// Greatest distance of a vertex to the quadratic patch through the points of each sheet at it, in local spacings
+    /// of the points, beyond four times their scatter.
+    pub vertex_offset: f64,
 }
 
 impl Default for Limits {
@@ -106,6 +118,8 @@ impl Default for Limits {
             off_plane: 0.7,
             unused_landmarks: 0.01,
             points_tested: 200_000,
+            significance: 1e-3,
+            vertex_offset: 1.0,
         }
     }
 }
@@ -164,6 +178,8 @@ impl CertificateOptions<'_> {
             ("mesh_to_points", l.mesh_to_points),
             ("off_plane", l.off_plane),
             ("unused_landmarks", l.unused_landmarks),
+            ("significance", l.significance),
+            ("vertex_offset", l.vertex_offset),
             ("noise", self.noise),
         ];
         if let Some((name, value)) = named.iter().find(|n| !(n.1 >= 0.0 && n.1.is_finite())) {
@@ -218,6 +234,8 @@ pub struct Certificate {
     pub geometry: Option<GeometryReport>,
     /// Distances between mesh and points.
     pub cover: Option<CoverReport>,
+    /// What the points say about the mesh, in units of their spacing; only with points.
+    pub faithful: Option<FaithfulReport>,
     /// Shapes of triangles.
     pub quality: Option<QualityReport>,
     /// What distances say instead, where there are no places.
@@ -233,6 +251,7 @@ impl Certificate {
             self.links.as_ref().map(|r| &r.violations),
             self.geometry.as_ref().map(|r| &r.violations),
             self.cover.as_ref().map(|r| &r.violations),
+            self.faithful.as_ref().map(|r| &r.violations),
             self.quality.as_ref().map(|r| &r.violations),
             self.by_distances.as_ref().map(|r| &r.violations),
         ];
@@ -250,6 +269,7 @@ impl Certificate {
             (Level::Links, self.links.is_some()),
             (Level::Geometry, self.geometry.is_some()),
             (Level::Cover, self.cover.is_some()),
+            (Level::Faithful, self.faithful.is_some()),
             (Level::Quality, self.quality.is_some()),
         ];
         let not = asked.into_iter().filter(|a| !a.1);
@@ -319,6 +339,7 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
         links: None,
         geometry: None,
         cover: None,
+        faithful: None,
         quality: None,
         by_distances: None,
     };
@@ -362,14 +383,25 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
     } else {
         geometry::tree(mesh, &frame, &bare)
     };
+    let points = options.points.filter(|p| !p.is_empty());
+    let feet = points.map(|points| {
+        let rows = cover::picks(points.len(), options.limits.points_tested);
+        Footprints::new(mesh, &incidence, &frame, &all, &bare, points, rows)
+    });
+    let ground = feet.as_ref().map(|f| Ground::new(mesh, &incidence, f));
+    let of = points.map_or(0, PointCloud::len);
+    let search = feet
+        .as_ref()
+        .zip(ground.as_ref())
+        .map(|(feet, ground)| Search::new(mesh, &incidence, feet, ground, of));
     certificate.cover = Some(cover::check(
         mesh,
-        &frame,
-        &all,
+        search.as_ref(),
         &bare,
         quality.edge_length.median,
         options,
     ));
+    certificate.faithful = search.map(|search| faithful::check(&search, of, options));
     certificate.quality = Some(quality);
     certificate
 }

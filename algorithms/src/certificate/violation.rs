@@ -17,6 +17,8 @@ pub enum Level {
     Geometry,
     /// Mesh and points are near each other, both ways.
     Cover,
+    /// The mesh says no more than the points, in units of their spacing.
+    Faithful,
     /// Triangles are not needles.
     Quality,
 }
@@ -29,6 +31,7 @@ impl fmt::Display for Level {
             Self::Links => "links",
             Self::Geometry => "geometry",
             Self::Cover => "cover",
+            Self::Faithful => "faithful",
             Self::Quality => "quality",
         })
     }
@@ -97,6 +100,13 @@ pub enum ViolationKind {
     MeshOffPoints,
     /// Landmarks that were selected and are not in the mesh.
     UnusedLandmarks,
+    /// An empty region of the points that the mesh covers, and that chance does not explain: a hole, a slit
+    /// or a cut.
+    BridgedGap,
+    /// Two sheets of points, one over the other, that the mesh takes for one.
+    MergedSheets,
+    /// Vertices off the points of a sheet at them.
+    VertexOffPoints,
     /// A triangle with an angle of nearly zero.
     NeedleTriangle,
 }
@@ -116,6 +126,7 @@ impl ViolationKind {
                 Level::Geometry
             }
             UncoveredPoints | MeshFarFromPoints | MeshOffPoints | UnusedLandmarks => Level::Cover,
+            BridgedGap | MergedSheets | VertexOffPoints => Level::Faithful,
             NeedleTriangle => Level::Quality,
         }
     }
@@ -153,6 +164,9 @@ impl ViolationKind {
             MeshFarFromPoints => "places of the mesh far from every input point",
             MeshOffPoints => "triangles off the input points next to them",
             UnusedLandmarks => "landmarks not in the mesh",
+            BridgedGap => "gaps of the points that the mesh covers",
+            MergedSheets => "vertices where two sheets of points are one in the mesh",
+            VertexOffPoints => "vertices off the points around them",
             NeedleTriangle => "triangles with an angle of nearly zero",
         }
     }
@@ -219,6 +233,9 @@ impl ViolationKind {
             MeshOffPoints => {
                 "decrease the triangulation radius or dl: triangles bridge empty space"
             }
+            BridgedGap => "decrease dl, so that the mesh leaves the gap open",
+            MergedSheets => "decrease dl and eps below the distance of the sheets",
+            VertexOffPoints => "decrease dl or eps: the sheets bend within a neighborhood",
             UnusedLandmarks => "increase the triangulation radius, or decrease the noise",
         }
     }

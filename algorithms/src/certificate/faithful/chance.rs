@@ -1,0 +1,86 @@
+//! How likely an empty region of a sample is by chance.
+//!
+//! The null is a Poisson process on the mesh with the local density of the points. Regions are measured by
+//! the number of points expected in them, so that one table serves all densities.
+
+/// What is known of the tail of the empty chains of one level.
+///
+/// A chain of level r is a connected set of places further than r spacings from every point, and its measure
+/// the number of points expected within r of it. N(x) = exp(`start` - `rate` x) chains a point have a
+/// measure above x.
+pub(super) struct Level {
+    /// Radius of the empty discs, in spacings.
+    pub radius: f64,
+    start: f64,
+    rate: f64,
+}
+
+const fn level(radius: f64, start: f64, rate: f64) -> Level {
+    Level {
+        radius,
+        start,
+        rate,
+    }
+}
+
+/// Levels from slits to holes. Below 0.6 spacings the empty places hang together all over a plane (filling
+/// 1.13 of the discs), and chains say nothing.
+///
+/// Fitted to the tails of 60 Poisson samples of 90,000 points of the plane, cut into pixels of 0.3
+/// spacings; at the ends of the fits (counts of some ten in 5.4 million points) they err to the side of chance.
+pub(super) const LEVELS: [Level; 7] = [
+    level(0.8, -3.98, 0.115),
+    level(0.9, -3.90, 0.158),
+    level(1.0, -3.40, 0.224),
+    level(1.15, -3.10, 0.32),
+    level(1.3, -2.58, 0.40),
+    level(1.5, -3.00, 0.44),
+    level(1.75, -4.50, 0.44),
+];
+
+impl Level {
+    /// Probability that one of the chains of `points` points is as large as `measure`, at most; all levels, and
+    /// discs beside chains, are counted as tried.
+    pub fn chain(&self, points: f64, measure: f64) -> f64 {
+        let tried = 2.0 * LEVELS.len() as f64;
+        (tried * points * (self.start - self.rate * measure).exp()).min(1.0)
+    }
+}
+
+/// Probability that one of the empty discs of `points` points has as large a `measure`, at most: n (1 + t) exp(-t),
+/// twice, as chains are tried beside discs.
+pub(super) fn disc(points: f64, measure: f64) -> f64 {
+    (2.0 * points * (1.0 + measure) * (-measure).exp()).min(1.0)
+}
+
+/// The measure that is as unlikely at a known density as `measure` is at a density that was
+/// counted from `counted` points: (1 + x / m)^-m stands for exp(-x).
+pub(super) fn known(measure: f64, counted: f64) -> f64 {
+    if counted > 0.0 {
+        counted * (measure / counted).ln_1p()
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn significant_discs_are_those_of_theory() {
+        // 5,000 points, p = 0.001: 4.8 to 4.9 spacings at a known density
+        let t = |width: f64| std::f64::consts::PI * width * width / 4.0;
+        assert!(disc(5000.0, t(5.0)) < 1e-3 && disc(5000.0, t(4.7)) > 1e-3);
+        assert!(known(20.0, 60.0) < 20.0 && (known(20.0, 1e9) - 20.0).abs() < 1e-5);
+        assert_eq!(known(20.0, 0.0), 0.0);
+    }
+
+    #[test]
+    fn wider_chains_are_rarer() {
+        for pair in LEVELS.windows(2) {
+            assert!(pair[0].radius < pair[1].radius);
+            assert!(pair[0].chain(1e4, 40.0) >= pair[1].chain(1e4, 40.0));
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! How even a sample is, beside points scattered at random.
+
+use std::f64::consts::LN_2;
+
+/// Largest factor by which a sample may be called less even than a random one, as a radius: with more, large
+/// holes would hide themselves.
+const LEAST_EVEN: f64 = 1.5;
+/// Standard errors by which a sample must differ from a random one to be treated otherwise.
+const SURE: f64 = 3.0;
+
+/// The tail of the distances from places of the surface to the points.
+///
+/// For a random sample the number of points t expected in the empty disc about a place is above x with
+/// probability exp(-x). Here it is exp(-(x / scale)^power): even samples have a power above one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Evenness {
+    scale: f64,
+    power: f64,
+}
+
+impl Evenness {
+    /// That of a random sample.
+    pub const RANDOM: Self = Self {
+        scale: 1.0,
+        power: 1.0,
+    };
+
+    /// Fitted to the median and the 90 percent quantile of `measures`, the expected numbers of points in the
+    /// empty discs about places picked evenly. `points` is how many points there are.
+    pub fn of(mut measures: Vec<f64>, points: usize) -> Self {
+        if measures.len() < 50 || points < 50 {
+            return Self::RANDOM;
+        }
+        measures.sort_unstable_by(f64::total_cmp);
+        let at = |q: f64| measures[((measures.len() - 1) as f64 * q) as usize];
+        let (half, high) = (at(0.5), at(0.9));
+        if !(half > 0.0 && high > half && high.is_finite()) {
+            return Self::RANDOM;
+        }
+        let independent = measures.len().min(points) as f64;
+        // standard errors of the logarithms of quantiles of an exponential variable
+        let (half_error, high_error) = (1.44 / independent.sqrt(), 1.3 / independent.sqrt());
+        let ten = 10.0_f64.ln();
+        let shift = |found: f64, random: f64, error: f64| {
+            let off = (found / random).ln();
+            if off.abs() < SURE * error {
+                0.0
+            } else {
+                off - off.signum() * error
+            }
+        };
+        let half = LN_2 * shift(half, LN_2, half_error).exp();
+        let high = ten * shift(high, ten, high_error).exp();
+        let power = ((ten / LN_2).ln() / (high / half).ln().max(1e-3)).clamp(0.6, 8.0);
+        Self {
+            scale: half / LN_2.powf(1.0 / power),
+            power,
+        }
+    }
+
+    /// Whether the sample is more even than a random one.
+    pub fn is_even(&self) -> bool {
+        self.power > 1.15
+    }
+
+    /// The radius that is as rare in this sample as `radius` is in a random one, both in spacings.
+    pub fn radius(&self, radius: f64) -> f64 {
+        let random = std::f64::consts::PI * radius * radius;
+        let own = self.scale * random.powf(1.0 / self.power);
+        (own / std::f64::consts::PI).sqrt().min(LEAST_EVEN * radius)
+    }
+
+    /// The measure of an empty disc that is as rare in a random sample as `measure` is in this one.
+    pub fn random(&self, measure: f64) -> f64 {
+        let own = (measure / self.scale).powf(self.power);
+        own.max(measure / (LEAST_EVEN * LEAST_EVEN))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Measures of the empty discs about a fine grid of places among the points of the unit square, away from its rim.
+    fn measures(points: &[[f64; 2]]) -> Vec<f64> {
+        let mut all = Vec::new();
+        for i in 10..50 {
+            for j in 10..50 {
+                let (x, y) = (f64::from(i) / 60.0, f64::from(j) / 60.0);
+                let square = |p: &[f64; 2]| (p[0] - x).powi(2) + (p[1] - y).powi(2);
+                let least = points.iter().map(square).fold(f64::INFINITY, f64::min);
+                all.push(std::f64::consts::PI * least * points.len() as f64);
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn a_random_sample_is_one_and_a_grid_is_not() {
+        use rand::{RngExt, SeedableRng};
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(4);
+        let scattered: Vec<[f64; 2]> = (0..900)
+            .map(|_| std::array::from_fn(|_| random.random_range(0.0..1.0)))
+            .collect();
+        let even = Evenness::of(measures(&scattered), 900);
+        assert!((even.radius(1.3) - 1.3).abs() < 0.1, "{even:?}");
+        let mut shaken = |i: usize| (i as f64 + random.random_range(0.0..0.4)) / 30.0;
+        let grid: Vec<[f64; 2]> = (0..900).map(|k| [shaken(k / 30), shaken(k % 30)]).collect();
+        let even = Evenness::of(measures(&grid), 900);
+        assert!(even.radius(1.3) < 1.0, "{even:?}");
+        assert!(even.random(6.0) > 12.0, "{even:?}");
+    }
+}

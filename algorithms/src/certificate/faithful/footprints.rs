@@ -1,0 +1,179 @@
+//! Where on the mesh the input points stand: the nearest place of the mesh to each.
+
+use crate::certificate::frame::Frame;
+use crate::certificate::geometry::corners;
+use crate::certificate::incidence::Incidence;
+use crate::certificate::tree::Tree;
+use crosscap_core::{Mesh, PointCloud, squared_distance};
+
+/// The nearest places of the mesh to the input points, in the order of their rows.
+///
+/// A sample on a surface with noise becomes a sample on the mesh, so that its gaps are measured
+/// within the surface, whatever the noise across it.
+pub(in crate::certificate) struct Footprints {
+    /// Rows of the input.
+    pub rows: Vec<u32>,
+    /// The triangle each stands on, or the number of triangles plus the number of the curve edge
+    /// without triangles.
+    pub items: Vec<u32>,
+    /// The places, one after the other.
+    pub places: Vec<f64>,
+    /// How far each point is from its place; infinite where there is no mesh.
+    pub heights: Vec<f64>,
+    /// Whether the place is on the boundary of the mesh: such a point may lie beyond it.
+    pub on_boundary: Vec<bool>,
+}
+
+impl Footprints {
+    /// Looks up the points `rows` in the tree of all triangles and of the curve edges `bare`.
+    pub fn new(
+        mesh: &Mesh,
+        incidence: &Incidence,
+        frame: &Frame,
+        tree: &Tree,
+        bare: &[[u32; 2]],
+        points: &PointCloud<f64>,
+        rows: impl Iterator<Item = usize>,
+    ) -> Self {
+        let count = mesh.complex.triangles.len();
+        let open = open_sides(mesh, incidence);
+        let shape = |item: usize| {
+            if item < count {
+                corners(mesh, item as u32)
+            } else {
+                let [a, b] = bare[item - count];
+                [a, b, b].map(|v| mesh.vertices.point(v as usize))
+            }
+        };
+        let mut all = Self {
+            rows: Vec::new(),
+            items: Vec::new(),
+            places: Vec::new(),
+            heights: Vec::new(),
+            on_boundary: Vec::new(),
+        };
+        for p in rows {
+            let row = points.point(p);
+            let found = tree.nearest(&frame.spot(row), frame.slack, f64::INFINITY, |item| {
+                let [a, b, c] = shape(item as usize);
+                crate::certificate::distance::point_triangle(row, a, b, c)
+            });
+            all.rows.push(p as u32);
+            let Some((item, square)) = found else {
+                all.items.push(u32::MAX);
+                all.places.extend_from_slice(row);
+                all.heights.push(f64::INFINITY);
+                all.on_boundary.push(true);
+                continue;
+            };
+            let sides = shape(item as usize);
+            let weights = nearest_weights(row, sides);
+            all.items.push(item);
+            all.places.extend((0..row.len()).map(|k| {
+                weights[0] * sides[0][k] + weights[1] * sides[1][k] + weights[2] * sides[2][k]
+            }));
+            all.heights.push(square.sqrt());
+            let beyond = (item as usize) < count
+                && (0..3).any(|k| weights[k] <= 0.0 && open[item as usize] >> k & 1 == 1);
+            all.on_boundary.push(beyond);
+        }
+        all
+    }
+
+    /// Number of points looked up.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Place of the one at `index`.
+    pub fn place(&self, index: usize) -> &[f64] {
+        let width = self.places.len() / self.rows.len().max(1);
+        &self.places[index * width..(index + 1) * width]
+    }
+}
+
+/// For every triangle the sides (bit k: opposite corner k) that no other triangle has.
+fn open_sides(mesh: &Mesh, incidence: &Incidence) -> Vec<u8> {
+    let mut open = vec![0; mesh.complex.triangles.len()];
+    for (e, ends) in incidence.edges.iter().enumerate() {
+        if let &[t] = incidence.at_edge(e) {
+            let corners = mesh.complex.triangles[t as usize];
+            for (k, corner) in corners.iter().enumerate() {
+                if !ends.contains(corner) {
+                    open[t as usize] |= 1 << k;
+                }
+            }
+        }
+    }
+    open
+}
+
+/// Weights of the corners at the place of a triangle that is nearest to a point; the triangle may
+/// be an edge whose end is named twice.
+fn nearest_weights(point: &[f64], [a, b, c]: [&[f64]; 3]) -> [f64; 3] {
+    let (mut uu, mut uv, mut vv, mut wu, mut wv) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for k in 0..point.len() {
+        let (u, v, w) = (b[k] - a[k], c[k] - a[k], point[k] - a[k]);
+        uu += u * u;
+        uv += u * v;
+        vv += v * v;
+        wu += w * u;
+        wv += w * v;
+    }
+    let determinant = uu * vv - uv * uv;
+    let (s, t) = (vv * wu - uv * wv, uu * wv - uv * wu);
+    if determinant > 1e-14 * uu * vv && s >= 0.0 && t >= 0.0 && s + t <= determinant {
+        return [
+            1.0 - (s + t) / determinant,
+            s / determinant,
+            t / determinant,
+        ];
+    }
+    let share = |along: f64, length: f64| {
+        if length > 0.0 {
+            (along / length).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
+    };
+    let (ab, ac) = (share(wu, uu), share(wv, vv));
+    let bc = share(wv - wu - uv + uu, uu - 2.0 * uv + vv);
+    let sides = [
+        [1.0 - ab, ab, 0.0],
+        [1.0 - ac, 0.0, ac],
+        [0.0, 1.0 - bc, bc],
+    ];
+    let square = |w: &[f64; 3]| -> f64 {
+        let at: Vec<f64> = (0..point.len())
+            .map(|k| w[0] * a[k] + w[1] * b[k] + w[2] * c[k])
+            .collect();
+        squared_distance(&at, point)
+    };
+    let mut best = (square(&sides[0]), sides[0]);
+    for side in &sides[1..] {
+        let away = square(side);
+        if away < best.0 {
+            best = (away, *side);
+        }
+    }
+    best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_nearest_place_is_as_near_as_its_distance(x in prop::collection::vec(-1.0..1.0_f64, 16)) {
+            let (p, t) = (&x[..4], [&x[4..8], &x[8..12], &x[12..]]);
+            let w = nearest_weights(p, t);
+            prop_assert!(w.iter().all(|&w| (0.0..=1.0).contains(&w)));
+            prop_assert!((w.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            let at: Vec<f64> = (0..4).map(|k| w[0] * t[0][k] + w[1] * t[1][k] + w[2] * t[2][k]).collect();
+            let square = crate::certificate::distance::point_triangle(p, t[0], t[1], t[2]);
+            prop_assert!((squared_distance(&at, p) - square).abs() < 1e-12);
+        }
+    }
+}

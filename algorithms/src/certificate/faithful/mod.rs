@@ -1,0 +1,174 @@
+//! Sixth level: the mesh says no more than the points do, in units of their local spacing.
+//!
+//! The other levels measure in units of the landmark separation, which whoever makes the mesh
+//! chooses; what is smaller than it they cannot see. Here the unit is the spacing of the points
+//! where they are: s = 1 / sqrt(density).
+
+mod chance;
+mod evenness;
+pub(super) mod footprints;
+mod gaps;
+pub(super) mod ground;
+mod patch;
+mod sheets;
+mod tiles;
+mod wings;
+
+#[cfg(test)]
+mod tests;
+
+pub use gaps::Gap;
+pub(super) use gaps::Search;
+pub use sheets::{Merged, Offset};
+
+use super::quality::quantile;
+use super::{CertificateOptions, Place, Violation, ViolationKind};
+use crosscap_core::Mesh;
+use ground::Ground;
+use serde::Serialize;
+use std::fmt;
+
+/// What the points say about the mesh.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FaithfulReport {
+    /// Points that were looked at.
+    pub points: usize,
+    /// Points there are. With more than are looked at, spacings are those of the former.
+    pub of: usize,
+    /// Least, median and greatest local spacing over the vertices, unit of the data.
+    pub spacing: [f64; 3],
+    /// Probability below which a finding is held for no chance.
+    pub significance: f64,
+    /// The least likely empty region that the mesh covers.
+    pub largest_gap: Option<Gap>,
+    /// The least likely gap in the heights of points over one sheet of the mesh, where there is any.
+    pub merged: Option<Merged>,
+    /// The vertex that is worst off the points around it.
+    pub offset: Option<Offset>,
+    /// Median scatter of the points about quadratic patches, in local spacings.
+    pub scatter: f64,
+    /// What is wrong.
+    pub violations: Vec<Violation>,
+}
+
+/// Width in landmark separations of a gap that a mesh leaves open: its boundary then has six edges and more.
+const RESOLVED: f64 = 2.5;
+
+pub(super) fn check(
+    search: &Search<'_>,
+    of: usize,
+    options: &CertificateOptions<'_>,
+) -> FaithfulReport {
+    let significance = options.limits.significance;
+    let mut report = FaithfulReport {
+        points: search.feet.len(),
+        of,
+        spacing: spacings(search.ground),
+        significance,
+        ..FaithfulReport::default()
+    };
+    let gaps = search.run(significance);
+    report.largest_gap = gaps.first().cloned();
+    let bridged: Vec<&Gap> = gaps.iter().filter(|g| g.p < significance).collect();
+    if let Some(worst) = bridged.first() {
+        let mut triangles: Vec<u32> = bridged.iter().map(|g| g.triangle).collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        let places = triangles.into_iter().map(Place::Triangle).collect();
+        let detail = format!(
+            "the largest is {:.1} spacings wide, {:.0} points are expected in it, p = {:.1e}; with dl = {:.3} it would stay open",
+            worst.width,
+            worst.expected,
+            worst.p,
+            worst.size / RESOLVED
+        );
+        let violation = Violation::at(ViolationKind::BridgedGap, places, |_| worst.place.clone());
+        report
+            .violations
+            .extend(violation.map(|v| v.measured(worst.p, significance).detailed(detail)));
+    }
+    if let Some(points) = options.points {
+        let found = sheets::look(search, points, significance, options.limits.vertex_offset);
+        sheets_told(search.mesh, found, &mut report);
+    }
+    report
+}
+
+/// What was found about sheets and places, as figures and violations.
+fn sheets_told(mesh: &Mesh, found: sheets::Found, report: &mut FaithfulReport) {
+    let at = |place| super::coordinates(mesh, place);
+    let significance = report.significance;
+    report.scatter = found.scatter;
+    let merged: Vec<&Merged> = found.merged.iter().filter(|m| m.p < significance).collect();
+    if let Some(worst) = merged.first() {
+        let places = merged.iter().map(|m| Place::Vertex(m.vertex)).collect();
+        let detail = format!(
+            "{:.2} spacings apart, p = {:.1e}; dl below {:.3} would keep them apart",
+            worst.apart, worst.p, worst.distance
+        );
+        let violation = Violation::at(ViolationKind::MergedSheets, places, at);
+        let told = violation.map(|v| v.measured(worst.p, significance).detailed(detail));
+        report.violations.extend(told);
+    }
+    let off: Vec<&Offset> = found.off.iter().filter(|o| o.away > o.allowed).collect();
+    if let Some(worst) = off.first() {
+        let places = off.iter().map(|o| Place::Vertex(o.vertex)).collect();
+        let violation = Violation::at(ViolationKind::VertexOffPoints, places, at);
+        let detail = "in local spacings of the points".into();
+        let told = violation.map(|v| v.measured(worst.away, worst.allowed).detailed(detail));
+        report.violations.extend(told);
+    }
+    report.merged = found.merged.into_iter().next();
+    report.offset = found.off.into_iter().next();
+}
+
+fn spacings(ground: &Ground) -> [f64; 3] {
+    let mut all: Vec<f64> = ground
+        .density
+        .iter()
+        .filter(|&&d| d > 0.0)
+        .map(|d| 1.0 / d.sqrt())
+        .collect();
+    all.sort_unstable_by(f64::total_cmp);
+    [0.0, 0.5, 1.0].map(|q| quantile(&all, q))
+}
+
+impl fmt::Display for FaithfulReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [least, median, most] = self.spacing;
+        write!(f, "points {median:.4} apart")?;
+        if most > 1.5 * least {
+            write!(f, " ({least:.4} to {most:.4})")?;
+        }
+        if self.points < self.of {
+            write!(
+                f,
+                ", as {} of {} points are looked at",
+                self.points, self.of
+            )?;
+        }
+        match &self.largest_gap {
+            Some(gap) => write!(
+                f,
+                "; largest gap bridged: {:.1} spacings ({:.4}), p = {:.1e}",
+                gap.width, gap.size, gap.p
+            ),
+            None => f.write_str("; no gap bridged"),
+        }?;
+        if let Some(off) = &self.offset {
+            write!(
+                f,
+                "\n           vertices up to {:.2} spacings off the points around them, which scatter by {:.2}",
+                off.away, self.scatter
+            )?;
+        }
+        if let Some(merged) = &self.merged {
+            write!(
+                f,
+                "\n           heights over a sheet have a gap of {:.2} spacings, p = {:.1e}",
+                merged.apart, merged.p
+            )?;
+        }
+        Ok(())
+    }
+}
