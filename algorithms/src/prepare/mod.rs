@@ -14,10 +14,12 @@
 
 mod crossing_sheets;
 mod noise;
+mod off_sheet;
 mod outliers;
 mod preparation;
 mod projection;
 mod resolution;
+mod scattered;
 mod sheet_fit;
 mod spacing;
 
