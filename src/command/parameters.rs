@@ -41,6 +41,9 @@ pub fn curve_tolerance(eps: f64) -> f64 {
     eps / 10.0
 }
 
+/// What is rarely set stands apart in the help.
+const TOLERANCES: &str = "Estimators and tolerances";
+
 #[derive(Args, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct ParameterArguments {
@@ -55,13 +58,13 @@ pub struct ParameterArguments {
     /// Largest radius of a chart in the triangulation, unit of the data
     ///
     /// Charts reach 3 dl, or this where it is smaller (method paper: this, or eps when left out). Must be larger than dl.
-    #[arg(long, visible_alias = "triangulation-epsilon", value_name = "E", value_parser = positive)]
+    #[arg(long, help_heading = TOLERANCES, visible_alias = "triangulation-epsilon", value_name = "E", value_parser = positive)]
     pub tri_eps: Option<f64>,
 
     /// Tolerance of the local dimension: the share of variance left over, 0 to 1
     ///
     /// Larger values see fewer crossings. The paper uses 0.01 to 0.075. [default: 0.05]
-    #[arg(long, visible_alias = "dimension-tolerance", value_name = "T", value_parser = share)]
+    #[arg(long, help_heading = TOLERANCES, visible_alias = "dimension-tolerance", value_name = "T", value_parser = share)]
     pub dt: Option<f64>,
 
     /// Estimator of the local dimension
@@ -69,6 +72,7 @@ pub struct ParameterArguments {
     /// All but pca are for surfaces that do not cross: they take a crossing for a surface.
     #[arg(
         long,
+        help_heading = TOLERANCES,
         value_name = "NAME",
         value_enum,
         default_value_t,
@@ -78,13 +82,13 @@ pub struct ParameterArguments {
 
     /// Tolerance of the fit of two sheets, unit of the data: the root mean squared distance of the points to the nearer one
     /// [default: eps / 5]
-    #[arg(long, visible_alias = "fit-tolerance", value_name = "T", value_parser = positive)]
+    #[arg(long, help_heading = TOLERANCES, visible_alias = "fit-tolerance", value_name = "T", value_parser = positive)]
     pub dp: Option<f64>,
 
     /// Tolerance of the double curve, unit of the data: points so near to both sheets are on it [default: eps / 10]
     ///
     /// Should exceed the sag of the surface within a neighborhood, about eps^2 / (4 x radius of curvature).
-    #[arg(long, visible_alias = "curve-tolerance", value_name = "T", value_parser = positive)]
+    #[arg(long, help_heading = TOLERANCES, visible_alias = "curve-tolerance", value_name = "T", value_parser = positive)]
     pub ep: Option<f64>,
 
     /// Separation of the landmarks, unit of the data: the vertices of the mesh are at least so far apart

@@ -44,7 +44,8 @@ const REASONS: usize = 8;
 #[derive(Args, Debug)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Reconstruct {
-    /// Points: .npy, .npz, .csv, .txt, .xyz, .pdb, .ply or .mat, one point a row
+    /// Points, one a row: .npy, .npz, .csv, .tsv, .txt, .xyz, .pts, .pdb, .ply, .pcd, .las, .off, .obj, .stl, .vtk, .vtu,
+    /// .vtp, .mat; .gz of any
     #[arg(value_name = "POINTS", required_unless_present = "distances")]
     points: Option<PathBuf>,
 
@@ -55,7 +56,7 @@ pub struct Reconstruct {
     #[arg(long, value_name = "DISTANCES", conflicts_with = "points")]
     distances: Option<PathBuf>,
 
-    /// Mesh to write: .npz (keeps everything), .vtu, .ply, .obj or .off
+    /// Mesh to write: .npz and .vtu (keep everything), .ply, .obj, .off, .stl or .glb
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
 
