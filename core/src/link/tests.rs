@@ -30,7 +30,7 @@ proptest! {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             name.swap(k, (state >> 33) as usize % (k + 1));
         }
-        let marked = |v: usize| v % 3 == 0;
+        let marked = |v: usize| v.is_multiple_of(3);
         let renamed: Vec<[u32; 2]> = edges.iter().rev().map(|&[a, b]| {
             [name[b as usize], name[a as usize]]
         }).collect();
@@ -41,7 +41,7 @@ proptest! {
     #[test]
     fn points_on_arcs_do_not_matter((count, edges) in graph()) {
         let (more, finer) = subdivided(count, &edges);
-        let marked = |v: usize| v < count && v % 2 == 0;
+        let marked = |v: usize| v < count && v.is_multiple_of(2);
         prop_assert_eq!(Link::of_graph(count, &edges, marked), Link::of_graph(more, &finer, marked));
     }
 

@@ -126,7 +126,7 @@ impl<S: Scalar> Fitter<'_, S> {
             Ok((_, located)) => located,
             Err(_) => vec![None; added],
         });
-        audit::placed(located, about, &local, model, i, &self.faults)
+        audit::placed(located, &about, &local, model, i, &self.faults)
     }
 }
 
