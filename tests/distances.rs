@@ -96,7 +96,7 @@ fn distances_of_no_points_are_taken_as_they_are() {
             outcome
                 .certificate
                 .to_string()
-                .contains("unchecked  geometry, cover, quality")
+                .contains("unchecked  geometry, cover, faithful, quality")
         );
         // Arcs stretch a landmark separation of 0.3 by less than half a percent.
         let (a, b) = (
@@ -159,6 +159,8 @@ fn lifting_takes_crossing_spheres_apart() {
     assert_eq!(outcome.homology.betti_rational, [2, 0, 2]);
     assert_eq!(outcome.pieces.unwrap().pieces.len(), 2);
     assert_eq!(outcome.report.curve_points, 0);
+    // Lifted points are no sample whose gaps speak.
+    assert_eq!(outcome.certificate.unchecked(), [Level::Faithful]);
     // The mesh is where the points are, not in the lifted space.
     assert_eq!(outcome.mesh.vertices.dimension(), 3);
     for (k, &row) in outcome.mesh.point_index.iter().enumerate() {

@@ -167,7 +167,10 @@ impl Progress<'_> {
         make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
     ) -> Result<Option<Symptom>, Error> {
         let since = Instant::now();
-        let outcome = self.prepared.run(&parameters, make)?;
+        // Every further attempt is another chance for a wrong mesh to pass.
+        let times = self.attempts.len() + 1;
+        let mut make = |parameters| make(parameters).map(|pipeline| pipeline.stricter(times));
+        let outcome = self.prepared.run(&parameters, &mut make)?;
         // What was chosen later may not suit the input; that is no fault of the input.
         if let Err(error) = &outcome
             && error.is_input()

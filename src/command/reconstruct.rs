@@ -354,10 +354,12 @@ fn verdict(outcome: &Outcome) -> String {
         return "verified".into();
     }
     let names: Vec<String> = unchecked.iter().map(ToString::to_string).collect();
-    format!(
-        "verified by distances; not checked for want of coordinates: {}",
-        names.join(", ")
-    )
+    let names = names.join(", ");
+    if outcome.certificate.by_distances.is_some() {
+        format!("verified by distances; not checked for want of coordinates: {names}")
+    } else {
+        format!("verified; not checked: {names}")
+    }
 }
 
 /// What became of distances.

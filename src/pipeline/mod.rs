@@ -113,6 +113,12 @@ impl Pipeline {
         self
     }
 
+    /// The same with a certificate that calls a gap or a separation in the points no chance so many times sooner.
+    pub(crate) fn stricter(mut self, times: usize) -> Self {
+        self.parts.limits.significance *= times as f64;
+        self
+    }
+
     /// Another dimension estimator than principal components with tolerance dt, which is
     /// computed for all points together from the moments of a search tree.
     pub fn estimator(mut self, estimator: Box<dyn DimensionEstimator<Scalar = f64>>) -> Self {

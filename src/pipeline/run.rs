@@ -380,6 +380,7 @@ impl Parts {
             special_points: &special,
             closed: self.parameters.boundary.is_empty()
                 && !self.models.iter().any(|m| m.finds_boundary()),
+            faithful: self.parameters.spaces.metric != MetricName::Lifted,
             limits: self.limits.clone(),
             ..CertificateOptions::default()
         };

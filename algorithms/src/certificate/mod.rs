@@ -94,7 +94,7 @@ pub struct Limits {
     /// How many input points are looked up in the mesh at most; picked evenly and always alike.
     pub points_tested: usize,
     /// Probability of a false alarm, over the whole cloud, at which a finding about the points is
-    /// held for no chance. Whoever tries k times until a mesh passes divides it by k.
+    /// held for no chance. Whoever tries k times until a mesh passes multiplies it by k: the verdict gets stricter.
     pub significance: f64,
     /// Greatest distance of a vertex to the quadratic patch through the points of each sheet at it, in local spacings
     /// of the points, beyond four times their scatter.
@@ -142,6 +142,10 @@ pub struct CertificateOptions<'a> {
     /// How far input points lie off the surface, typically; unit of the data. Four times this is
     /// added to the limits of the cover.
     pub noise: f64,
+    /// Whether the level *faithful* is asked. It takes the spacing of the points for that of a sample of the surface,
+    /// which it is not where coordinates hold more than places: the tangent planes of the lifted metric are estimates,
+    /// and beside a crossing they open gaps that no surface has.
+    pub faithful: bool,
     /// Thresholds.
     pub limits: Limits,
 }
@@ -156,6 +160,7 @@ impl Default for CertificateOptions<'_> {
             admissible_links: &LinkKind::GENERIC,
             closed: false,
             noise: 0.0,
+            faithful: true,
             limits: Limits::default(),
         }
     }
@@ -401,7 +406,9 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
         quality.edge_length.median,
         options,
     ));
-    certificate.faithful = search.map(|search| faithful::check(&search, of, options));
+    certificate.faithful = search
+        .filter(|_| options.faithful)
+        .map(|search| faithful::check(&search, of, options));
     certificate.quality = Some(quality);
     certificate
 }

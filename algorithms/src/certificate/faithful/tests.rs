@@ -124,8 +124,8 @@ fn a_bent_slit() {
     });
 }
 
-/// Random, dense in one corner and thin in the other, even: nothing is found. The false alarms of 1,500 such
-/// meshes are in the guide; these are a watch on them.
+/// Random, dense in one corner and thin in the other, even: nothing is found. The guide says how often a
+/// finding is a false alarm; these are a watch on it.
 #[test]
 fn chance_is_no_gap() {
     let mesh = plate(|_, _| false);
