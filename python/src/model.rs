@@ -82,7 +82,6 @@ impl SingularityModel for PyModel {
             points: told.points,
             center: told.center,
             center_offset: told.center_offset,
-            ..Decomposition::default()
         })
     }
 

@@ -5,6 +5,8 @@ import doctest
 import importlib
 import inspect
 import pkgutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -25,6 +27,16 @@ def test_every_public_thing_is_documented_with_an_example_somewhere():
         thing = getattr(crosscap, name)
         if callable(thing):
             assert thing.__doc__ and len(thing.__doc__) > 20, name
+
+
+def test_every_public_name_is_there_and_the_command_line_needs_none():
+    assert set(dir(crosscap)) == set(crosscap.__all__)
+    assert set(crosscap._HOME) | {"laws", "__version__"} == set(crosscap.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'cusp'"):
+        crosscap.cusp
+    code = "import sys, crosscap.__main__; print('sklearn' in sys.modules or 'numpy' in sys.modules)"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert told.stdout == "False\n", told.stderr
 
 
 def test_the_stubs_name_what_the_extension_has():
