@@ -173,8 +173,7 @@ impl Progress<'_> {
         let outcome = self.prepared.run(&parameters, &mut make)?;
         // What was chosen later may not suit the input; that is no fault of the input.
         if let Err(error) = &outcome
-            && error.is_input()
-            && self.attempts.is_empty()
+            && (*error == Error::Interrupted || error.is_input() && self.attempts.is_empty())
         {
             return Err(error.clone());
         }

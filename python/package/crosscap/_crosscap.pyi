@@ -1,0 +1,74 @@
+"""The extension module: see the modules of the package for what its functions mean."""
+
+from collections.abc import Callable, Mapping
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+_Mesh = Mapping[str, Any]
+
+def check(mesh: _Mesh, points: _Floats | None, dl: float | None, closed: bool) -> str: ...
+def compare(
+    points: _Floats,
+    settings: Mapping[str, Any],
+    comparison: Mapping[str, Any],
+    progress: Callable[[str], object] | None,
+) -> str: ...
+def curves(triangles: _Integers) -> tuple[_Integers, _Integers]: ...
+def dimension(
+    points: _Floats,
+    estimator: str,
+    eps: float | None,
+    neighbors: int,
+    dt: float,
+    threads: int,
+) -> dict[str, Any]: ...
+def homology(mesh: _Mesh) -> str: ...
+def isomap(mesh: _Mesh, dimension: int, landmarks: int) -> dict[str, Any]: ...
+def laws_of_estimator(
+    plugin: tuple[str, Callable[..., Any]], cases: int, seed: int
+) -> list[tuple[str, str, str, str]]: ...
+def laws_of_metric(
+    make: Callable[[_Floats], tuple[str, Callable[..., Any]]], cases: int, seed: int
+) -> list[tuple[str, str, str, str]]: ...
+def laws_of_model(
+    plugin: object, of: str, cases: int, seed: int
+) -> list[tuple[str, str, str, str]]: ...
+def main(arguments: list[str]) -> int: ...
+def page(mesh: _Mesh, title: str, verdict: str) -> str: ...
+def read_mesh(path: str | PathLike[str]) -> dict[str, Any]: ...
+def read_points(
+    path: str | PathLike[str], array: str | None, transpose: bool, columns: str | None
+) -> tuple[_Floats, list[str]]: ...
+def reconstruct(
+    points: _Floats,
+    settings: Mapping[str, Any],
+    progress: Callable[[str], object] | None,
+) -> tuple[dict[str, Any] | None, str | None]: ...
+def reconstruct_distances(
+    name: str,
+    bytes: bytes,
+    settings: Mapping[str, Any],
+    progress: Callable[[str], object] | None,
+) -> tuple[dict[str, Any] | None, str | None]: ...
+def sample(
+    surface: str,
+    count: int | None,
+    seed: int,
+    thinning: float | None,
+    noise: float,
+    boundary: bool,
+) -> dict[str, Any]: ...
+def surfaces() -> list[tuple[str, str]]: ...
+def write_mesh(
+    path: str | PathLike[str],
+    mesh: _Mesh,
+    triangle_piece: list[int] | None,
+    metadata: str,
+) -> None: ...

@@ -1,0 +1,154 @@
+//! Meshes: homology, certificate, layouts, files, pages.
+
+use crate::arrays::{Curves, MeshArrays, cloud, deduced, of_cloud, of_curves, of_mesh, tuples};
+use crate::refusal::{bad_value, violation};
+use crosscap::command::convert::places_for;
+use crosscap::command::findings::Findings;
+use crosscap::command::picture;
+use crosscap_algorithms::certificate::{CertificateOptions, certify};
+use crosscap_algorithms::homology::homology as homology_of;
+use crosscap_algorithms::isomap::{IsomapOptions, isomap_places};
+use crosscap_algorithms::pieces::pieces;
+use crosscap_backends::files::{self, MeshExtras};
+use crosscap_backends::picture as page_of;
+use crosscap_core::{Error, Mesh, PointCloud};
+use numpy::PyReadonlyArray2;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// The edges with another number of triangles than two, and these numbers.
+#[pyfunction]
+pub fn curves<'py>(
+    py: Python<'py>,
+    triangles: PyReadonlyArray2<'py, i64>,
+) -> PyResult<Curves<'py>> {
+    of_curves(py, &deduced(&tuples(&triangles)?))
+}
+
+/// Betti numbers over Q and Z/2, torsion, Euler characteristic: as JSON.
+#[pyfunction]
+pub fn homology(py: Python<'_>, mesh: MeshArrays<'_>) -> PyResult<String> {
+    let mesh = mesh.mesh()?;
+    let found = py.detach(|| homology_of(&mesh.complex));
+    let found = found.map_err(|error| bad_value(&error))?;
+    Ok(json!(found).to_string())
+}
+
+/// What is known about a mesh, as JSON: what `crosscap check --json` prints, and the reasons.
+#[pyfunction]
+pub fn check(
+    py: Python<'_>,
+    mesh: MeshArrays<'_>,
+    points: Option<PyReadonlyArray2<'_, f64>>,
+    dl: Option<f64>,
+    closed: bool,
+) -> PyResult<String> {
+    let mesh = mesh.mesh()?;
+    let points = points.as_ref().map(cloud).transpose()?;
+    let known = py.detach(|| checked(&mesh, points.as_ref(), dl, closed));
+    known.map(|known| known.to_string())
+}
+
+fn checked(
+    mesh: &Mesh,
+    points: Option<&PointCloud<f64>>,
+    dl: Option<f64>,
+    closed: bool,
+) -> PyResult<Value> {
+    let options = CertificateOptions {
+        points,
+        landmark_separation: dl,
+        closed,
+        ..CertificateOptions::default()
+    };
+    let homology = homology_of(&mesh.complex).map_err(|error| bad_value(&error))?;
+    let certificate = certify(mesh, &options);
+    let pieces = pieces(mesh);
+    let findings = Findings {
+        mesh,
+        homology: &homology,
+        certificate: &certificate,
+        pieces: &pieces,
+    };
+    let mut known = Value::Object(findings.json(certificate.verdict().is_verified()));
+    known["reasons"] = certificate.violations().map(violation).collect();
+    Ok(known)
+}
+
+/// Places of the vertices by Isomap over the mesh, the residual variance, the number of components.
+#[pyfunction]
+pub fn isomap<'py>(
+    py: Python<'py>,
+    mesh: MeshArrays<'py>,
+    dimension: usize,
+    landmarks: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let mesh = mesh.mesh()?;
+    let found = py.detach(|| isomap_places(&mesh, dimension, &IsomapOptions { landmarks }));
+    let found = found.map_err(|error| bad_value(&error))?;
+    let all = PyDict::new(py);
+    all.set_item("places", of_cloud(py, &found.places)?)?;
+    all.set_item("residual_variance", found.residual_variance)?;
+    all.set_item("components", found.components)?;
+    Ok(all)
+}
+
+/// The page on which a mesh is turned, HTML.
+#[pyfunction]
+pub fn page(
+    py: Python<'_>,
+    mesh: MeshArrays<'_>,
+    title: String,
+    verdict: String,
+) -> PyResult<String> {
+    let mesh = mesh.mesh()?;
+    py.detach(|| -> Result<String, Error> {
+        let homology = homology_of(&mesh.complex)?;
+        let certificate = certify(&mesh, &CertificateOptions::default());
+        let pieces = pieces(&mesh);
+        let findings = Findings {
+            mesh: &mesh,
+            homology: &homology,
+            certificate: &certificate,
+            pieces: &pieces,
+        };
+        let scene = picture::scene(&title, &findings, &verdict, None)?;
+        page_of::page(&scene)
+    })
+    .map_err(|error| bad_value(&error))
+}
+
+/// Reads a mesh from a file: its arrays, with `pieces` and `metadata` (JSON) where the file has them.
+#[pyfunction]
+pub fn read_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
+    let file = py.detach(|| files::read_mesh(path));
+    let file = file.map_err(|error| bad_value(&error))?;
+    let all = of_mesh(py, &file.mesh)?;
+    all.set_item("triangle_piece", file.extras.pieces)?;
+    all.set_item("metadata", file.extras.metadata.to_string())?;
+    Ok(all)
+}
+
+/// Writes a mesh; `metadata` is JSON.
+#[pyfunction]
+pub fn write_mesh(
+    py: Python<'_>,
+    path: PathBuf,
+    mesh: MeshArrays<'_>,
+    triangle_piece: Option<Vec<i64>>,
+    metadata: &str,
+) -> PyResult<()> {
+    let mesh = mesh.mesh()?;
+    let extras = MeshExtras {
+        metadata: serde_json::from_str(metadata).map_err(|error| bad_value(&error))?,
+        pieces: triangle_piece,
+    };
+    py.detach(|| -> Result<(), String> {
+        let places = places_for(&path, &mesh, None).map_err(|e| e.to_string())?;
+        let written = files::write_mesh(&path, &mesh, &extras, places.as_ref());
+        written.map_err(|e| e.to_string())
+    })
+    .map_err(|error| bad_value(&error))
+}
