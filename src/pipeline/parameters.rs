@@ -17,8 +17,8 @@ pub enum Method {
     /// Cells cut along the curves, repairs, refinement: what the measurements say works.
     #[default]
     Cells,
-    /// The algorithm of Martin & Watson (2011) to the letter, for comparison: see [`Published`] and
-    /// [`Rules::PAPER`]. Models and triangle rule of the builder are not used.
+    /// The algorithm of Martin & Watson (2011) to the letter, for comparison: see [`Published`](crosscap_algorithms::stratify::Published) and
+    /// [`Rules::PAPER`](crosscap_algorithms::triangulate::Rules::PAPER). Models and triangle rule of the builder are not used.
     Paper,
 }
 
