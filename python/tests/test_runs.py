@@ -13,9 +13,10 @@ import crosscap
 LONG = """
 import crosscap
 points = crosscap.sample("two-spheres", 200_000, thin=0.005).points
+surface = crosscap.SurfaceReconstruction(eps=0.3, dl=0.05)
 print("begin", flush=True)
 try:
-    crosscap.SurfaceReconstruction(eps=0.3, dl=0.05).fit(points)
+    surface.fit(points)
 except KeyboardInterrupt:
     print("interrupted", flush=True)
 """
