@@ -5,8 +5,8 @@
 use crosscap::algorithms::chart::ClassicalScaling;
 use crosscap::algorithms::homology::homology;
 use crosscap::algorithms::predicate::PlanarPredicate;
-use crosscap::algorithms::triangulate::{LargestAngle, Rules, Triangulator};
-use crosscap::core::{CellNeighborhood, SparseDistances, StratifiedLandmarks};
+use crosscap::algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
+use crosscap::core::{CellNeighborhood, SparseDistances, StratifiedLandmarks, Triangulator};
 
 /// Great-circle distances of `n` places spread over the unit sphere: stands for a measured matrix.
 fn measured(n: usize) -> Vec<f64> {
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         )?,
     };
     waist.check()?;
-    let triangulation = Triangulator {
+    let triangulation = AdvancingFront {
         chart: &ClassicalScaling,
         test: &PlanarPredicate,
         rule: &LargestAngle,

@@ -9,7 +9,7 @@ use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::{TriplePoint, TwoPlanes};
 use crosscap_algorithms::space::Space;
-use crosscap_algorithms::stratify::{AnalysisOptions, Analyzer, Dimensions, Tuning};
+use crosscap_algorithms::stratify::{AnalysisOptions, Analyzer, Tuning};
 use crosscap_algorithms::surfaces::Random;
 use crosscap_algorithms::triangulate::MinimumCircumradius;
 use crosscap_backends::euclidean::EuclideanOracle;
@@ -214,7 +214,7 @@ fn analysis(
     let estimator = PrincipalComponents::new(0.05)?;
     let analyzer = Analyzer {
         space: Space::new(metric, oracle).with_places(&cloud),
-        dimensions: Dimensions::by(&estimator),
+        estimator: &estimator,
         models: &[],
         execute: &Serial,
         tuning: &Tuning::MEASURED,

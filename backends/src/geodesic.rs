@@ -449,6 +449,10 @@ impl<S: Scalar> NeighborhoodOracle for GeodesicMetric<S> {
             out.extend(beyond.take(count - out.len()));
         }
     }
+
+    fn name(&self) -> &str {
+        "graph-search"
+    }
 }
 
 /// Puts ties of a list that is sorted by distance in the order of their indices.

@@ -448,7 +448,7 @@ pub fn write_reconstruction(
         "boundary_points": parameters.boundary.len(),
         "models": parameters.models,
         "method": parameters.method.to_string(),
-        "estimator": outcome.report.estimator,
+        "estimator": outcome.report.plugins.estimator,
     });
     if let Some(given) = &outcome.report.given {
         metadata["distances"] = json!(given);

@@ -9,7 +9,7 @@ mod run;
 
 pub use parameters::{Method, Parameters};
 pub use progress::Stage;
-pub use report::{Outcome, Report};
+pub use report::{Outcome, PluginNames, Report};
 pub(crate) use rows::{distinct_points, distinct_rows};
 pub(crate) use run::Input;
 
@@ -19,15 +19,14 @@ use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::metric::CheckedMetric;
 use crosscap_algorithms::predicate::PlanarPredicate;
-use crosscap_algorithms::stratify::Tuning;
-use crosscap_algorithms::triangulate::{
-    LargestAngle, MinimumCircumradius, Rules, Triangulation, Triangulator,
-};
+use crosscap_algorithms::stratify::{Cells, PublishedMethod, Stratifier, Tuning};
+use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, MinimumCircumradius, Rules};
 use crosscap_backends::interrupt::Interrupt;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{
     CompatibilityTest, DimensionEstimator, Error, LandmarkSelector, LocalChart, MetricSpace,
     NeighborhoodOracle, PointCloud, SingularityModel, StratifiedLandmarks, TriangleRule,
+    Triangulation, Triangulator,
 };
 use progress::StageObserver;
 
@@ -61,6 +60,8 @@ struct Parts {
     chart: Box<dyn LocalChart>,
     test: Box<dyn CompatibilityTest>,
     rule: Box<dyn TriangleRule>,
+    stratifier: Box<dyn Stratifier<f64>>,
+    triangulator: Option<Box<dyn Triangulator<f64>>>,
     oracle: Option<Box<dyn NeighborhoodOracle<Scalar = f64>>>,
     analysis_metric: Option<Custom>,
     chart_metric: Option<Custom>,
@@ -86,6 +87,11 @@ impl Pipeline {
             chart: Box::new(ClassicalScaling),
             test: Box::new(PlanarPredicate),
             rule: Box::new(LargestAngle),
+            stratifier: match parameters.method {
+                Method::Cells => Box::new(Cells),
+                Method::Paper => Box::new(PublishedMethod),
+            },
+            triangulator: None,
             oracle: None,
             analysis_metric: None,
             chart_metric: None,
@@ -147,6 +153,21 @@ impl Pipeline {
     /// Another order in which triangles are tried.
     pub fn rule(mut self, rule: Box<dyn TriangleRule>) -> Self {
         self.parts.rule = rule;
+        self
+    }
+
+    /// Another way from the cloud to the waist than that of [`Parameters::method`].
+    pub fn stratifier(mut self, stratifier: Box<dyn Stratifier<f64>>) -> Self {
+        self.parts.stratifier = stratifier;
+        self
+    }
+
+    /// Another way from the waist to triangles than the advancing front. Chart, compatibility test and triangle rule of
+    /// this pipeline are parts of the front, and are not used then.
+    ///
+    /// An [interrupt](Self::interrupt) is heeded before and after it.
+    pub fn triangulator(mut self, triangulator: Box<dyn Triangulator<f64>>) -> Self {
+        self.parts.triangulator = Some(triangulator);
         self
     }
 
@@ -224,10 +245,9 @@ impl Pipeline {
     /// Triangulates a waist that came from elsewhere: measured distances, another program.
     ///
     /// # Errors
-    /// Those of [`Triangulator::triangulate`].
+    /// Those of [`StratifiedLandmarks::check`] and [`Triangulator::triangulate`].
     pub fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
-        let chart = self.parts.chart.as_ref();
-        self.parts.triangulator(chart).triangulate(waist)
+        self.parts.triangulated(waist, self.parts.chart.as_ref())
     }
 
     /// Does `work`, of which the run is a part, so that it can be stopped.
@@ -254,10 +274,32 @@ impl Parts {
         Threads::heeding(self.parameters.threads.unwrap_or(0), &self.interrupt)
     }
 
-    /// The triangulator that lays stars out in a chart.
-    fn triangulator<'a>(&'a self, chart: &'a dyn LocalChart) -> Triangulator<'a> {
+    /// The triangulation of a waist, looked over.
+    fn triangulated(
+        &self,
+        waist: &StratifiedLandmarks<f64>,
+        chart: &dyn LocalChart,
+    ) -> Result<Triangulation, Error> {
+        let front = self.front(chart);
+        let triangulator = self.triangulator(&front);
+        if self.triangulator.is_some() {
+            // The usual one looks for itself.
+            waist.check()?;
+        }
+        let found = triangulator.triangulate(waist)?;
+        found.check(waist, triangulator.name())?;
+        Ok(found)
+    }
+
+    /// The triangulator that was plugged in, or the usual one.
+    fn triangulator<'a>(&'a self, usual: &'a AdvancingFront<'a>) -> &'a dyn Triangulator<f64> {
+        self.triangulator.as_deref().unwrap_or(usual)
+    }
+
+    /// The usual triangulator, which lays stars out in a chart.
+    fn front<'a>(&'a self, chart: &'a dyn LocalChart) -> AdvancingFront<'a> {
         let literal = self.parameters.method == Method::Paper;
-        Triangulator {
+        AdvancingFront {
             chart,
             test: self.test.as_ref(),
             rule: if literal {

@@ -10,7 +10,8 @@
 //! | cells | (inside) | what is around every landmark in each of its cells |
 //! | waist | [`Stratification`] | all of that without coordinates, for the triangulator |
 //!
-//! [`Cut`] goes through the later stages; [`Published`] is another way to the same waist.
+//! [`Cells`] goes through all of them, [`PublishedMethod`] is another way to the same waist, and whoever has a third
+//! implements [`Stratifier`].
 
 mod analysis;
 mod atlas;
@@ -22,14 +23,16 @@ mod refine;
 mod site;
 mod skeleton;
 mod strata;
+mod stratifier;
 mod tuning;
 mod waist;
 
-pub use analysis::{Analysis, AnalysisOptions, Analyzer, Dimensions, ModelCounts};
-pub use published::{Published, PublishedCut};
+pub use analysis::{Analysis, AnalysisOptions, Analyzer, ModelCounts};
+pub use published::{Published, PublishedCut, PublishedMethod};
 pub use refine::Refinement;
 pub use site::{FitUsed, On, Site, StratumKind};
 pub use strata::Strata;
+pub use stratifier::{Cells, Ground, Stratifier};
 pub use tuning::{AnalysisTuning, CellTuning, RefinementTuning, SkeletonTuning, Tuning};
 pub use waist::{
     ChartSpace, Cut, PointStratum, Stratification, StratifyCounts, StratifyOptions, WaistProducer,

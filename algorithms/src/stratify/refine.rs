@@ -1,15 +1,15 @@
 //! Landmarks where the surface bends more than triangles of the usual size can follow.
 
-use super::strata::Strata;
 use super::tuning::RefinementTuning;
+use super::waist::WaistProducer;
 use crosscap_core::{Complex, Neighbor, NeighborhoodOracle, Scalar};
 
 /// A triangulation beside the points that it should follow.
 pub struct Refinement<'r, S: Scalar> {
     /// Neighborhoods of places in straight lines, between the coordinates that triangles are drawn in.
     pub near: &'r dyn NeighborhoodOracle<Scalar = S>,
-    /// Where every point is.
-    pub strata: &'r Strata,
+    /// Says where every row lies, and which may be landmarks.
+    pub producer: &'r dyn WaistProducer<S>,
     /// Rows of the landmarks.
     pub rows: &'r [usize],
     /// Landmark separation dl.
@@ -20,15 +20,15 @@ pub struct Refinement<'r, S: Scalar> {
 
 impl<S: Scalar> Refinement<'_, S> {
     /// Rows that should be landmarks as well: one where the middle of a triangle or of an edge is far from
-    /// every point. None where every point is one already, or the space has no coordinates.
+    /// every point. None where every point is one already, or the producer names no places.
     ///
     /// O(log n) for each triangle, O(L) for each that strays, with L landmarks.
     pub fn rows_where_astray(&self, complex: &Complex) -> Vec<usize> {
         let mut added = Vec::new();
-        let Some(places) = self.strata.places() else {
+        let Some(places) = self.producer.places() else {
             return added;
         };
-        if self.rows.len() == self.strata.len() {
+        if self.rows.len() == places.len() {
             return added;
         }
         let place = |v: u32| places.point(self.rows[v as usize]);
@@ -57,7 +57,7 @@ impl<S: Scalar> Refinement<'_, S> {
             growth,
             ..
         } = *self.tuning;
-        let places = self.strata.places()?;
+        let places = self.producer.places()?;
         let mut reach = stray * self.dl;
         if self.near.is_near(middle, S::of(reach)) {
             return None;
@@ -74,7 +74,7 @@ impl<S: Scalar> Refinement<'_, S> {
         let limit = (separation * self.dl).powi(2);
         let free = |row: usize| {
             let mut others = self.rows.iter().chain(added);
-            self.strata.is_regular(row) && others.all(|&r| places.squared_distance(r, row) >= limit)
+            self.producer.may_add(row) && others.all(|&r| places.squared_distance(r, row) >= limit)
         };
         near.iter().map(|x| x.index).find(|&r| free(r))
     }

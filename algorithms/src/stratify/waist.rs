@@ -8,7 +8,7 @@ use super::landmarks;
 use super::skeleton::Skeleton;
 use super::strata::Strata;
 use crate::space::Space;
-use crosscap_core::{Error, LandmarkSelector, Link, Scalar, StratifiedLandmarks};
+use crosscap_core::{Error, LandmarkSelector, Link, PointCloud, Scalar, StratifiedLandmarks};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of the stratification.
@@ -80,6 +80,71 @@ pub struct Stratification<S> {
     pub counts: StratifyCounts,
 }
 
+impl<S: Scalar> Stratification<S> {
+    /// A waist and the rows that its landmarks stand for, counted.
+    pub fn new(waist: StratifiedLandmarks<S>, rows: Vec<usize>) -> Self {
+        let members: usize = waist.neighborhoods.iter().map(|x| x.members.len()).sum();
+        let of = |least: u8| waist.strata.iter().filter(|&&d| d <= least).count();
+        Self {
+            counts: StratifyCounts {
+                landmarks: rows.len(),
+                curve_landmarks: of(1),
+                corners: of(0),
+                curve_edges: waist.curve_edges.len(),
+                cut_edges: 0,
+                mean_members: members as f64 / waist.neighborhoods.len().max(1) as f64,
+            },
+            waist,
+            rows,
+            points: Vec::new(),
+        }
+    }
+
+    /// Whether this can be what a producer of waists named `plugin` makes of so many `points`: every landmark stands for a
+    /// row of its own, and strata of dimension 0 are at landmarks. What the waist itself must satisfy,
+    /// [`StratifiedLandmarks::check`] says.
+    ///
+    /// # Errors
+    /// [`Error::Law`] for the first landmark of which it is not true.
+    pub fn check(&self, plugin: &str, points: usize) -> Result<(), Error> {
+        let broken = |landmark: usize, detail: String| {
+            Err(Error::Law {
+                plugin: plugin.into(),
+                law: "answer: every landmark stands for a row of its own, and points are at landmarks",
+                point: landmark,
+                detail,
+            })
+        };
+        let count = self.waist.strata.len();
+        if self.rows.len() != count {
+            let detail = format!("{} rows for {count} landmarks", self.rows.len());
+            return broken(0, detail);
+        }
+        let mut seen = vec![false; points];
+        for (k, &row) in self.rows.iter().enumerate() {
+            match seen.get_mut(row) {
+                Some(taken) if !*taken => *taken = true,
+                Some(_) => return broken(k, format!("row {row} has a landmark already")),
+                None => return broken(k, format!("row {row} of {points}")),
+            }
+        }
+        let stray = self.points.iter().find(|p| {
+            let stratum = self.waist.strata.get(p.landmark as usize);
+            stratum != Some(&0)
+        });
+        match stray {
+            Some(p) => {
+                let k = p.landmark as usize;
+                broken(
+                    k,
+                    format!("a point at landmark {k} of {count}, which is none"),
+                )
+            }
+            None => Ok(()),
+        }
+    }
+}
+
 /// What says how far a chart reaches, and measures the distances in it.
 #[derive(Clone, Copy)]
 pub enum ChartSpace<'a, S: Scalar> {
@@ -91,21 +156,33 @@ pub enum ChartSpace<'a, S: Scalar> {
 
 /// Makes waists of one cloud at one resolution: the first, and others with more landmarks.
 ///
-/// A waist does not depend on those that were made before.
+/// # Why it has this shape
+/// Triangles show where landmarks are missing, so a waist is asked for more than once; what is the same
+/// every time (strata, curves, the landmarks that were chosen) belongs into the producer, what depends on the landmarks
+/// into [`waist`](Self::waist). Coordinates are not in a waist, but a mesh has them: the
+/// producer says where the rows lie that its landmarks stand for.
+///
+/// # Laws
+/// - *answer*: a waist that passes [`Stratification::check`];
+/// - *extra*: a row of `extra` that [may be added](Self::may_add) is a landmark;
+/// - *independence*: a waist does not depend on those that were made before.
 pub trait WaistProducer<S: Scalar> {
-    /// Where every point is.
-    fn strata(&self) -> &Strata;
-
-    /// Whether landmarks may be added.
-    fn takes_more(&self) -> bool {
-        true
-    }
-
-    /// The waist, with the rows `extra` as landmarks whatever their separation.
+    /// The waist, with the rows `extra` as landmarks whatever their separation, those that may not be added left out.
     ///
     /// # Errors
     /// Those of the producer.
     fn waist(&self, extra: &[usize]) -> Result<Stratification<S>, Error>;
+
+    /// Whether a row may be a landmark beside those that were chosen. As it stands none may, and where triangles stray from
+    /// the points they stay as they are.
+    fn may_add(&self, _row: usize) -> bool {
+        false
+    }
+
+    /// Places of all rows, where some of them were moved; `None` where every row is at its point.
+    fn places(&self) -> Option<&PointCloud<f64>> {
+        None
+    }
 }
 
 /// A cloud cut along its curves and points into cells.
@@ -176,7 +253,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         let mut free = vec![true; self.strata.len()];
         self.chosen.iter().for_each(|&row| free[row] = false);
         for &row in extra {
-            if row < self.strata.len() && self.strata.is_regular(row) && free[row] {
+            if self.may_add(row) && free[row] {
                 rows.push(row);
             }
         }
@@ -185,8 +262,12 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
 }
 
 impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
-    fn strata(&self) -> &Strata {
-        &self.strata
+    fn may_add(&self, row: usize) -> bool {
+        row < self.strata.len() && self.strata.is_regular(row)
+    }
+
+    fn places(&self) -> Option<&PointCloud<f64>> {
+        self.strata.places()
     }
 
     fn waist(&self, extra: &[usize]) -> Result<Stratification<S>, Error> {
@@ -214,24 +295,15 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
             &rows,
             &neighborhoods,
         )?;
-        let members: usize = neighborhoods.iter().map(|x| x.members.len()).sum();
-        Ok(Stratification {
-            counts: StratifyCounts {
-                landmarks: rows.len(),
-                curve_landmarks: on_curves,
-                corners: self.skeleton.corners(),
-                curve_edges: self.skeleton.edges().len(),
-                cut_edges,
-                mean_members: members as f64 / neighborhoods.len().max(1) as f64,
-            },
-            waist: StratifiedLandmarks {
-                strata,
-                curve_edges: self.skeleton.edges().to_vec(),
-                neighborhoods,
-                distances,
-            },
-            points: (self.skeleton).points(&self.strata, self.analyzer.models),
-            rows,
-        })
+        let waist = StratifiedLandmarks {
+            strata,
+            curve_edges: self.skeleton.edges().to_vec(),
+            neighborhoods,
+            distances,
+        };
+        let mut out = Stratification::new(waist, rows);
+        out.counts.cut_edges = cut_edges;
+        out.points = (self.skeleton).points(&self.strata, self.analyzer.models);
+        Ok(out)
     }
 }

@@ -1,10 +1,13 @@
 //! The advancing front: which star is closed next.
 
 use super::front::Front;
-use super::parts::{Incomplete, Triangulation, TriangulationCounts, Triangulator};
+use super::parts::AdvancingFront;
 use super::star::Patch;
 use crate::audit::{AuditedChart, AuditedRule, AuditedTest, Watch, known_pairs};
-use crosscap_core::{Complex, CurveEdge, Error, Scalar, StratifiedLandmarks};
+use crosscap_core::{
+    Complex, CurveEdge, Error, Incomplete, Scalar, StratifiedLandmarks, Triangulation,
+    TriangulationCounts, Triangulator,
+};
 use std::collections::VecDeque;
 use std::sync::atomic::AtomicU32;
 
@@ -15,8 +18,8 @@ const ATTEMPT_SHARE: usize = 4;
 /// Passes over the stars of curve landmarks: a repair of one may open another.
 const CURVE_PASSES: usize = 4;
 
-impl Triangulator<'_> {
-    /// Triangulates: every landmark of a cell is visited and its star closed, the front
+impl<S: Scalar> Triangulator<S> for AdvancingFront<'_> {
+    /// Every landmark of a cell is visited and its star closed, the front
     /// advancing from neighbor to neighbor; then the stars of curve landmarks are completed, cell by cell.
     ///
     /// When a star cannot be closed, a repair removes the triangles around it, closes it first
@@ -30,10 +33,7 @@ impl Triangulator<'_> {
     /// order of the ends, or a triangle without area that does not rank last.
     ///
     /// O(L k^2) for L landmarks with k members in a neighborhood, plus the charts.
-    pub fn triangulate<S: Scalar>(
-        &self,
-        input: &StratifiedLandmarks<S>,
-    ) -> Result<Triangulation, Error> {
+    fn triangulate(&self, input: &StratifiedLandmarks<S>) -> Result<Triangulation, Error> {
         input.check()?;
         let first = input.neighborhoods.first().and_then(|near| {
             let (&a, &b) = (near.members.first()?, near.members.get(1)?);
@@ -42,7 +42,7 @@ impl Triangulator<'_> {
         let size = first.map_or(1.0, Scalar::as_f64);
         known_pairs(self.test, if size > 0.0 { size } else { 1.0 })?;
         let watch = Watch::default();
-        let parts = &Triangulator {
+        let parts = &AdvancingFront {
             chart: &AuditedChart {
                 chart: self.chart,
                 watch: &watch,
@@ -73,6 +73,10 @@ impl Triangulator<'_> {
             incomplete,
             counts,
         })
+    }
+
+    fn name(&self) -> &str {
+        "advancing-front"
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Failures, Law, LawBroken, Settings};
 
 /// Sources of the modules that state laws.
-const SOURCES: [&str; 9] = [
+const SOURCES: [&str; 10] = [
     include_str!("metric.rs"),
     include_str!("neighborhood.rs"),
     include_str!("dimension.rs"),
@@ -12,6 +12,7 @@ const SOURCES: [&str; 9] = [
     include_str!("landmarks.rs"),
     include_str!("compatibility.rs"),
     include_str!("rule.rs"),
+    include_str!("triangulation.rs"),
     include_str!("result.rs"),
 ];
 
