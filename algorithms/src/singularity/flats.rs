@@ -18,15 +18,6 @@ const LEAST_GRADIENT: f64 = 0.05;
 impl<const D: usize> Flat<D> {
     /// The plane through `origin` whose normal space is spanned best by `gradients`.
     pub(super) fn normal_to(origin: SVector<f64, D>, gradients: &[SVector<f64, D>]) -> Self {
-        // The plane is asked for at every point: where there is one normal it takes no matrix.
-        if D == 3
-            && let Some(normal) = main_direction(gradients)
-        {
-            return Self {
-                origin,
-                normals: vec![normal],
-            };
-        }
         let mut spread = DMatrix::<f64>::zeros(D, D);
         for g in gradients {
             for a in 0..D {
@@ -72,22 +63,6 @@ impl<const D: usize> Flat<D> {
     }
 }
 
-/// The unit vector along which one or two vectors are largest together; `None` for more of them, or for none that
-/// differs from zero.
-fn main_direction<const D: usize>(vectors: &[SVector<f64, D>]) -> Option<SVector<f64, D>> {
-    let sum = match vectors {
-        [one] => *one,
-        [one, other] => {
-            // Of the two in whose plane it lies, the leading one of their products.
-            let difference = one.norm_squared() - other.norm_squared();
-            let angle = 0.5 * (2.0 * one.dot(other)).atan2(difference);
-            one * angle.cos() + other * angle.sin()
-        }
-        _ => return None,
-    };
-    sum.try_normalize(0.0)
-}
-
 /// Eigenvectors in order of falling eigenvalues.
 fn axes<const D: usize>(matrix: DMatrix<f64>) -> Vec<SVector<f64, D>> {
     let eigen = SymmetricEigen::new(matrix);
@@ -99,26 +74,21 @@ fn axes<const D: usize>(matrix: DMatrix<f64>) -> Vec<SVector<f64, D>> {
         .collect()
 }
 
-/// Planes that are tried as candidates: of a sheet with 6 % of the points, four.
-const MOST_CANDIDATES: usize = 64;
-
-/// Candidate planes: at points, every few of them where there are many, the one normal to the gradients there,
-/// where they are not small.
+/// Candidate planes: at every point the one normal to the gradients there, where they are not small.
 pub(super) fn candidates<const D: usize>(
     points: &[SVector<f64, D>],
     mut gradients: impl FnMut(&SVector<f64, D>, &mut Vec<SVector<f64, D>>),
 ) -> Vec<Flat<D>> {
-    let stride = points.len().div_ceil(MOST_CANDIDATES).max(1);
-    let tried = || points.iter().step_by(stride);
-    let mut all: Vec<(f64, Vec<SVector<f64, D>>)> = Vec::with_capacity(MOST_CANDIDATES);
-    for x in tried() {
+    let mut all: Vec<(f64, Vec<SVector<f64, D>>)> = Vec::with_capacity(points.len());
+    for x in points {
         let mut out = Vec::new();
         gradients(x, &mut out);
         let size = out.iter().map(|g| g.norm_squared()).sum::<f64>().sqrt();
         all.push((size, out));
     }
     let largest = all.iter().map(|g| g.0).fold(0.0, f64::max);
-    tried()
+    points
+        .iter()
         .zip(&all)
         .filter(|(_, g)| g.0 > LEAST_GRADIENT * largest)
         .map(|(x, g)| Flat::normal_to(*x, &g.1))
@@ -191,26 +161,6 @@ pub(super) fn nearest<const D: usize>(flats: &[Flat<D>], x: &SVector<f64, D>) ->
 mod tests {
     use super::*;
     use nalgebra::Vector3;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn the_main_direction_is_the_leading_eigenvector(
-            numbers in prop::array::uniform6(-1.0..1.0f64),
-        ) {
-            let [a, b, c, d, e, f] = numbers;
-            let pair = [Vector3::new(a, b, c), Vector3::new(d, e, f)];
-            let spread = pair.iter().map(|g| g * g.transpose()).sum::<nalgebra::Matrix3<f64>>();
-            let largest = spread.symmetric_eigenvalues().max();
-            for own in [&pair[..1], &pair[..]] {
-                let Some(found) = main_direction(own) else { continue };
-                prop_assert!((found.norm() - 1.0).abs() < 1e-12);
-                let along: f64 = own.iter().map(|g| g.dot(&found).powi(2)).sum();
-                let most = if own.len() == 1 { pair[0].norm_squared() } else { largest };
-                prop_assert!((along - most).abs() < 1e-12 + 1e-9 * most, "{} {}", along, most);
-            }
-        }
-    }
 
     #[test]
     fn one_plane_keeps_off_what_is_off_it() {
