@@ -1,5 +1,6 @@
 //! Fifth level: mesh and points are near each other, both ways.
 
+use super::distance::Products;
 use super::faithful::Search;
 use super::geometry::corners;
 use super::quality::quantile;
@@ -251,24 +252,20 @@ pub(super) fn check(
 }
 
 /// Distance of `point` to the plane through `place` that is parallel to the triangle.
-fn off_plane(point: &[f64], place: &[f64], [a, b, c]: [&[f64]; 3]) -> f64 {
-    let (mut uu, mut uv, mut vv, mut wu, mut wv, mut ww) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for k in 0..point.len() {
-        let (u, v, w) = (b[k] - a[k], c[k] - a[k], point[k] - place[k]);
-        uu += u * u;
-        uv += u * v;
-        vv += v * v;
-        wu += w * u;
-        wv += w * v;
-        ww += w * w;
-    }
-    let determinant = uu * vv - uv * uv;
-    let inside = if determinant > 1e-14 * uu * vv {
+fn off_plane(point: &[f64], place: &[f64], triangle: [&[f64]; 3]) -> f64 {
+    let products = Products::of(point, place, triangle);
+    let Products {
+        uu,
+        uv,
+        vv,
+        wu,
+        wv,
+        ww,
+    } = products;
+    let along = products.determinant().map_or(0.0, |determinant| {
         (vv * wu * wu - 2.0 * uv * wu * wv + uu * wv * wv) / determinant
-    } else {
-        0.0
-    };
-    (ww - inside).max(0.0).sqrt()
+    });
+    (ww - along).max(0.0).sqrt()
 }
 
 #[cfg(test)]

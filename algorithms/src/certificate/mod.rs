@@ -40,7 +40,7 @@ pub use by_distances::{DistanceReport, certify_by_distances};
 pub use cover::{CoverReport, Distances};
 pub use crosscap_core::{Link, LinkKind};
 pub use edges::EdgeReport;
-pub use faithful::{FaithfulReport, Gap, Merged, Offset};
+pub use faithful::{FaithfulReport, Gap, Merged, Offset, Stretch};
 pub use geometry::GeometryReport;
 pub use indices::IndexReport;
 pub use links::{LinkReport, SpecialPoint};

@@ -103,6 +103,9 @@ pub enum ViolationKind {
     /// An empty region of the points that the mesh covers, and that chance does not explain: a hole, a slit
     /// or a cut.
     BridgedGap,
+    /// A stretch of a curve without points that chance does not explain: there are two curves, or the curve ends before
+    /// what the mesh joins it to.
+    BareStretch,
     /// Two sheets of points, one over the other, that the mesh takes for one.
     MergedSheets,
     /// Vertices off the points of a sheet at them.
@@ -126,7 +129,7 @@ impl ViolationKind {
                 Level::Geometry
             }
             UncoveredPoints | MeshFarFromPoints | MeshOffPoints | UnusedLandmarks => Level::Cover,
-            BridgedGap | MergedSheets | VertexOffPoints => Level::Faithful,
+            BridgedGap | BareStretch | MergedSheets | VertexOffPoints => Level::Faithful,
             NeedleTriangle => Level::Quality,
         }
     }
@@ -165,6 +168,7 @@ impl ViolationKind {
             MeshOffPoints => "triangles off the input points next to them",
             UnusedLandmarks => "landmarks not in the mesh",
             BridgedGap => "gaps of the points that the mesh covers",
+            BareStretch => "edges of curves where the points leave a gap",
             MergedSheets => "vertices where two sheets of points are one in the mesh",
             VertexOffPoints => "vertices off the points around them",
             NeedleTriangle => "triangles with an angle of nearly zero",
@@ -234,6 +238,9 @@ impl ViolationKind {
                 "decrease the triangulation radius or dl: triangles bridge empty space"
             }
             BridgedGap => "decrease dl, so that the mesh leaves the gap open",
+            BareStretch => {
+                "decrease dl and eps, so that the mesh leaves the gap open; or give more points of the curve"
+            }
             MergedSheets => "decrease dl and eps below the distance of the sheets",
             VertexOffPoints => "decrease dl or eps: the sheets bend within a neighborhood",
             UnusedLandmarks => "increase the triangulation radius, or decrease the noise",

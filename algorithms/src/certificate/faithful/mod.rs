@@ -4,12 +4,17 @@
 //! chooses; what is smaller than it they cannot see. Here the unit is the spacing of the points
 //! where they are: s = 1 / sqrt(density).
 
+mod arcs;
+mod around;
+mod chains;
 mod chance;
+mod discs;
 mod evenness;
 pub(super) mod footprints;
 mod gaps;
 pub(super) mod ground;
 mod patch;
+mod search;
 mod sheets;
 mod tiles;
 mod wings;
@@ -17,8 +22,9 @@ mod wings;
 #[cfg(test)]
 mod tests;
 
-pub use gaps::Gap;
-pub(super) use gaps::Search;
+pub use arcs::Stretch;
+pub use discs::Gap;
+pub(super) use search::Search;
 pub use sheets::{Merged, Offset};
 
 use super::quality::quantile;
@@ -41,6 +47,8 @@ pub struct FaithfulReport {
     pub significance: f64,
     /// The least likely empty region that the mesh covers.
     pub largest_gap: Option<Gap>,
+    /// The least likely stretch of a curve without points.
+    pub largest_stretch: Option<Stretch>,
     /// The least likely gap in the heights of points over one sheet of the mesh, where there is any.
     pub merged: Option<Merged>,
     /// The vertex that is worst off the points around it.
@@ -87,11 +95,39 @@ pub(super) fn check(
             .violations
             .extend(violation.map(|v| v.measured(worst.p, significance).detailed(detail)));
     }
+    let stretches = arcs::stretches(search.mesh, search.incidence, search.feet);
+    stretches_told(stretches, &mut report);
     if let Some(points) = options.points {
         let found = sheets::look(search, points, significance, options.limits.vertex_offset);
         sheets_told(search.mesh, found, &mut report);
     }
     report
+}
+
+/// Stretches of curves without points, as a figure and a violation.
+fn stretches_told(stretches: Vec<Stretch>, report: &mut FaithfulReport) {
+    let bare: Vec<&Stretch> = stretches
+        .iter()
+        .filter(|s| s.is_significant(report.significance))
+        .collect();
+    if let Some(worst) = bare.first() {
+        let places = bare.iter().map(|s| Place::Edge(s.edge)).collect();
+        let detail = format!(
+            "the worst is {:.1} times as long as its points are apart ({:.4}){}, p = {:.1e}",
+            worst.length,
+            worst.size,
+            if worst.joint {
+                ", where the curve is joined to something else"
+            } else {
+                ""
+            },
+            worst.p
+        );
+        let violation = Violation::at(ViolationKind::BareStretch, places, |_| worst.place.clone());
+        let told = violation.map(|v| v.measured(worst.p, report.significance).detailed(detail));
+        report.violations.extend(told);
+    }
+    report.largest_stretch = stretches.into_iter().next();
 }
 
 /// What was found about sheets and places, as figures and violations.
@@ -155,6 +191,13 @@ impl fmt::Display for FaithfulReport {
             ),
             None => f.write_str("; no gap bridged"),
         }?;
+        if let Some(stretch) = &self.largest_stretch {
+            write!(
+                f,
+                "; longest bare stretch of a curve: {:.1} spacings ({:.4}), p = {:.1e}",
+                stretch.length, stretch.size, stretch.p
+            )?;
+        }
         if let Some(off) = &self.offset {
             write!(
                 f,

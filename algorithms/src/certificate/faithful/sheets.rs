@@ -1,7 +1,7 @@
 //! Sheets of points that the mesh takes for one, and vertices off their points.
 
-use super::gaps::Search;
 use super::patch::Patch;
+use super::search::Search;
 use super::wings::Wings;
 use crosscap_core::PointCloud;
 use serde::Serialize;
