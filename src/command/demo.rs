@@ -5,9 +5,9 @@ use super::findings::pretty;
 use super::number::counted;
 use super::paper::paper_parameters;
 use super::parameters::MethodName;
-use super::picture;
 use super::reconstruct::{findings, reasons, reconstruct, report, write_reconstruction};
 use super::terminal::{Progress, complain, say};
+use super::{overlay, picture};
 use clap::Args;
 use crosscap_algorithms::surfaces::SampleSurface;
 use crosscap_backends::files::{AnyCloud, FileError, write_bytes_whole};
@@ -73,7 +73,8 @@ impl Demo {
         let progress = Progress::new("drawing");
         let page = self.output.join("index.html");
         let image = self.output.join("picture.png");
-        let scene = picture::scene("Two spheres", &findings, "verified", None)?;
+        let mut scene = picture::scene("Two spheres", &findings, "verified", None)?;
+        overlay::add_points(&mut scene, &outcome.mesh, &cloud.to_f64())?;
         let pages = picture::bytes(&page, &scene, picture::SIZE)?;
         let pixels = picture::bytes(&image, &scene, picture::SIZE)?;
         std::fs::create_dir_all(&self.output).map_err(|source| FileError::Write {
