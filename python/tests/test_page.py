@@ -20,7 +20,7 @@ FAN = crosscap.Mesh(
     point_index=[41, *range(6)],
 )
 WIDTH, HEIGHT, PANEL = 1000, 700, 310
-MIDDLE = f"{(WIDTH - PANEL) // 2}:{HEIGHT // 2}"
+MIDDLE = f"{(WIDTH - PANEL) / 2 / WIDTH}:0.5"
 
 
 @pytest.fixture

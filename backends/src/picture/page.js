@@ -665,8 +665,9 @@
   prepare(layouts[state.layout], state.layout);
   const zoomed = state.zoom; home(); state.zoom = zoomed;
   words.forEach(function (w) {
-    const part = /^pick=(\d+):(\d+)$/.exec(w);
-    if (part) { paint(); pick(Number(part[1]), Number(part[2])); }
+    // As shares of width and height.
+    const part = /^pick=([\d.]+):([\d.]+)$/.exec(w);
+    if (part) { paint(); pick(Number(part[1]) * canvas.clientWidth, Number(part[2]) * canvas.clientHeight); }
   });
   redraw();
 })();
