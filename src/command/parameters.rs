@@ -138,7 +138,6 @@ pub struct ParameterArguments {
 
 /// Help in two lengths, for commands with many options: the ones that most runs need, and all.
 #[derive(Args, Debug)]
-#[expect(dead_code, reason = "clap prints the help by itself")]
 pub struct Help {
     /// Print the options that most runs need
     #[arg(short = 'h', long = "help", help_heading = MAIN, action = ArgAction::HelpShort)]
