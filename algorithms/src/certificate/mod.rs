@@ -230,6 +230,7 @@ impl CertificateOptions<'_> {
 /// The reports of all levels. A level that could not be asked, because an earlier one found
 /// the arrays unusable, is missing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Certificate {
     /// Whether the arrays are those of a simplicial complex with distinct places.
     pub indices: IndexReport,

@@ -30,6 +30,7 @@ pub struct Incomplete {
 
 /// What the triangulation counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct TriangulationCounts {
     /// Stars visited, with repetitions.
     pub visits: usize,
