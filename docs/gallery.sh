@@ -25,7 +25,10 @@ while IFS='|' read -r name title sample reconstruct told; do
     # shellcheck disable=SC2086
     "$crosscap" sample $sample --seed 1 -o "$name.npy" > /dev/null 2>&1
     # shellcheck disable=SC2086
-    "$crosscap" reconstruct "$name.npy" -o "$name.npz" $reconstruct > /dev/null 2>&1
+    if ! "$crosscap" reconstruct "$name.npy" -o "$name.npz" $reconstruct > /dev/null 2>&1; then
+        echo "$name: no verified mesh" >&2
+        exit 1
+    fi
     "$crosscap" view "$name.npz" -o "$pictures/$name.png" --size 480x360 > /dev/null 2>&1
     betti=$("$crosscap" check "$name.npz" --json 2> /dev/null | tr -d ' \n' | sed 's/.*"betti_rational":\[\([0-9,]*\)\].*/\1/; s/,/, /g' || true)
     cat >> "$page" <<END
@@ -33,7 +36,7 @@ while IFS='|' read -r name title sample reconstruct told; do
 
 ![$title](images/gallery/$name.png)
 
-$told: $betti.
+$told. Betti numbers $betti.
 
 \`\`\`sh
 crosscap sample $sample --seed 1 -o $name.npy
