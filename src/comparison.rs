@@ -100,6 +100,7 @@ impl Comparison {
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum RunState {
     /// A verified mesh.
     Verified,
@@ -113,6 +114,7 @@ pub enum RunState {
 
 /// One contender at one radius.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ComparedRun {
     /// Name of the contender: the metric of analysis and charts.
     pub metric: String,

@@ -14,6 +14,7 @@ use std::str::FromStr;
 /// A metric on the points, by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum MetricName {
     /// Straight lines.
     #[default]
@@ -55,6 +56,7 @@ impl FromStr for MetricName {
 
 /// How large the neighborhoods of the analysis are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Neighborhoods {
     /// Radius eps everywhere.
     #[default]
@@ -195,6 +197,7 @@ impl Spaces {
 /// What may be wrong with a result although nothing failed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Warning {
     /// About the graph of geodesic distances.
     Graph(GraphWarning),

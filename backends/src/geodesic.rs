@@ -48,6 +48,7 @@ pub struct Component {
 
 /// What there is to know about a neighbor graph before trusting its distances.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct GraphReport {
     /// Number of points.
     pub points: usize,
@@ -65,6 +66,7 @@ pub struct GraphReport {
 
 /// Why geodesic distances over a graph may mislead.
 #[derive(Clone, Debug, Error, PartialEq, Serialize)]
+#[non_exhaustive]
 pub enum GraphWarning {
     /// Points in different components are at infinite distance.
     #[error(

@@ -28,6 +28,7 @@ const NEAR: usize = 15;
 /// All of it is read from the distances of points to their neighbors, so that it does not matter
 /// where the distances come from.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Density {
     /// Number of points.
     pub points: usize,

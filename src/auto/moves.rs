@@ -12,6 +12,7 @@ use serde::Serialize;
 /// A change of the parameters of the first attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Move {
     /// Larger neighborhoods, landmarks as they were: no move makes the mesh coarser, as a coarser mesh passes
     /// by seeing less.

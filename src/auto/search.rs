@@ -19,6 +19,7 @@ use std::time::{Duration, Instant};
 
 /// What a search for parameters yields.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Search {
     /// How densely the points lie; none where all lengths were pinned.
     pub density: Option<Density>,
@@ -37,6 +38,7 @@ pub struct Search {
 /// Why a verified mesh is not handed over.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Doubt {
     /// Two attempts passed with different topology.
     TwoReadings(Topology, Topology),
@@ -67,6 +69,7 @@ impl Search {
 
 /// What is chosen from the points, before anything is tried.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Choice {
     /// How densely the points lie; none where all lengths were pinned.
     pub density: Option<Density>,

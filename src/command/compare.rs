@@ -43,8 +43,8 @@ const USUAL_STEPS: usize = 8;
 #[derive(Args, Debug)]
 #[command(after_long_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Compare {
-    /// Points, one a row: .npy, .npz, .csv, .tsv, .txt, .xyz, .pts, .pdb, .ply, .pcd, .las, .off, .obj, .stl, .vtk, .vtu,
-    /// .vtp, .mat; .gz of any; or a .json of this command
+    /// Points, one a row: .npy, .npz, .csv, .tsv, .txt, .xyz, .pts, .pdb, .xtc, .dcd, .ply, .pcd, .las, .laz, .off,
+    /// .obj, .stl, .vtk, .vtu, .vtp, .mat; .gz of any; or a .json of this command
     #[arg(value_name = "POINTS")]
     points: PathBuf,
 

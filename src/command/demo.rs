@@ -1,18 +1,18 @@
 //! `crosscap demo`: everything once, with something to look at.
 
 use super::failure::Failure;
-use super::findings::{Findings, pretty};
+use super::findings::pretty;
 use super::number::counted;
 use super::paper::paper_parameters;
 use super::parameters::MethodName;
-use super::picture;
 use super::reconstruct::{findings, reasons, reconstruct, report, write_reconstruction};
 use super::terminal::{Progress, complain, say};
+use super::{overlay, picture};
 use clap::Args;
 use crosscap::{Outcome, Parameters};
 use crosscap_algorithms::surfaces::SampleSurface;
 use crosscap_backends::files::{AnyCloud, FileError, write_bytes_whole};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -71,8 +71,7 @@ impl Demo {
             findings.topology(),
             findings.description()
         ))?;
-        let input = json!({ "surface": surface.name(), "scalar": cloud.scalar_name() });
-        let page = self.write(&parameters, &outcome, &findings, input)?;
+        let page = self.write(surface.name(), &cloud, &parameters, &outcome)?;
         say(format!(
             "done in       {:.1} s\n\nOpen {} in a browser to turn it. Beside it: picture.png, mesh.npz, report.json.",
             start.elapsed().as_secs_f64(),
@@ -83,15 +82,16 @@ impl Demo {
     /// Writes page, image, mesh and report; the page's path.
     fn write(
         &self,
+        surface: &str,
+        cloud: &AnyCloud,
         parameters: &Parameters,
         outcome: &Outcome,
-        findings: &Findings<'_>,
-        input: Value,
     ) -> Result<PathBuf, Failure> {
         let progress = Progress::new("drawing");
         let page = self.output.join("index.html");
         let image = self.output.join("picture.png");
-        let scene = picture::scene("Two spheres", findings, "verified", None)?;
+        let mut scene = picture::scene("Two spheres", &findings(outcome), "verified", None)?;
+        overlay::add_points(&mut scene, &outcome.mesh, &cloud.to_f64())?;
         let pages = picture::bytes(&page, &scene, picture::SIZE)?;
         let pixels = picture::bytes(&image, &scene, picture::SIZE)?;
         std::fs::create_dir_all(&self.output).map_err(|source| FileError::Write {
@@ -106,6 +106,7 @@ impl Demo {
             outcome,
             outcome.is_verified(),
         )?;
+        let input = json!({ "surface": surface, "scalar": cloud.scalar_name() });
         let report = pretty(&report(outcome, input));
         write_bytes_whole(self.output.join("report.json"), report.as_bytes())?;
         drop(progress);

@@ -19,6 +19,7 @@ pub mod findings;
 pub mod layout;
 mod number;
 mod output;
+pub mod overlay;
 mod paper;
 mod parameters;
 pub mod picture;

@@ -42,6 +42,7 @@ pub struct PluginNames {
 
 /// Counts and times of a reconstruction.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Version of this program.
     pub version: &'static str,
@@ -92,6 +93,7 @@ pub struct Report {
 
 /// What a reconstruction yields, verified or not.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Outcome {
     /// The mesh; vertices on double curves lie on the curve, beside their input point.
     pub mesh: Mesh,

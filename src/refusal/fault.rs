@@ -38,6 +38,7 @@ pub enum FaultKind {
 
 /// A place in the data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Spot {
     /// Row of the input, where it is one.
     pub row: Option<usize>,
@@ -49,6 +50,7 @@ pub struct Spot {
 
 /// One kind of thing that went wrong.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Fault {
     /// The kind.
     pub kind: FaultKind,

@@ -36,6 +36,7 @@ impl Distances {
 
 /// Distances both ways between mesh and points, and landmarks that were left out.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct CoverReport {
     /// The unit of the other lengths: the landmark separation dl, unit of the data.
     pub landmark_separation: f64,

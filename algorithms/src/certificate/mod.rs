@@ -25,6 +25,7 @@ mod edges;
 mod faithful;
 mod frame;
 mod geometry;
+mod heights;
 mod incidence;
 mod indices;
 mod links;
@@ -42,6 +43,7 @@ pub use crosscap_core::{Link, LinkKind};
 pub use edges::EdgeReport;
 pub use faithful::{FaithfulReport, Gap, Merged, Offset, Stretch};
 pub use geometry::GeometryReport;
+pub use heights::distances_to_mesh;
 pub use indices::IndexReport;
 pub use links::{LinkReport, SpecialPoint};
 pub use quality::{Cell, QualityReport, Spread};
@@ -228,6 +230,7 @@ impl CertificateOptions<'_> {
 /// The reports of all levels. A level that could not be asked, because an earlier one found
 /// the arrays unusable, is missing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Certificate {
     /// Whether the arrays are those of a simplicial complex with distinct places.
     pub indices: IndexReport,

@@ -284,6 +284,7 @@ impl fmt::Display for Place {
 
 /// One kind of violation with all its places.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Violation {
     /// What is wrong.
     pub kind: ViolationKind,

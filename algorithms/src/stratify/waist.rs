@@ -39,6 +39,7 @@ impl StratifyOptions {
 
 /// What the stratification counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct StratifyCounts {
     /// Landmarks.
     pub landmarks: usize,

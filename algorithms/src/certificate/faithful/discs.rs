@@ -23,6 +23,7 @@ const AROUND: f64 = 1.4;
 
 /// An empty region of the points that the mesh covers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Gap {
     /// Diameter of its largest empty disc, in local spacings.
     pub width: f64,

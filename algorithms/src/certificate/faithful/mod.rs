@@ -36,6 +36,7 @@ use std::fmt;
 
 /// What the points say about the mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct FaithfulReport {
     /// Points that were looked at.
     pub points: usize,
