@@ -1,7 +1,7 @@
 //! `crosscap demo`: everything once, with something to look at.
 
 use super::failure::Failure;
-use super::findings::pretty;
+use super::findings::{Findings, pretty};
 use super::number::counted;
 use super::paper::paper_parameters;
 use super::parameters::MethodName;
@@ -9,9 +9,10 @@ use super::picture;
 use super::reconstruct::{findings, reasons, reconstruct, report, write_reconstruction};
 use super::terminal::{Progress, complain, say};
 use clap::Args;
+use crosscap::{Outcome, Parameters};
 use crosscap_algorithms::surfaces::SampleSurface;
 use crosscap_backends::files::{AnyCloud, FileError, write_bytes_whole};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -70,10 +71,27 @@ impl Demo {
             findings.topology(),
             findings.description()
         ))?;
+        let input = json!({ "surface": surface.name(), "scalar": cloud.scalar_name() });
+        let page = self.write(&parameters, &outcome, &findings, input)?;
+        say(format!(
+            "done in       {:.1} s\n\nOpen {} in a browser to turn it. Beside it: picture.png, mesh.npz, report.json.",
+            start.elapsed().as_secs_f64(),
+            page.display()
+        ))
+    }
+
+    /// Writes page, image, mesh and report; the page's path.
+    fn write(
+        &self,
+        parameters: &Parameters,
+        outcome: &Outcome,
+        findings: &Findings<'_>,
+        input: Value,
+    ) -> Result<PathBuf, Failure> {
         let progress = Progress::new("drawing");
         let page = self.output.join("index.html");
         let image = self.output.join("picture.png");
-        let scene = picture::scene("Two spheres", &findings, "verified", None)?;
+        let scene = picture::scene("Two spheres", findings, "verified", None)?;
         let pages = picture::bytes(&page, &scene, picture::SIZE)?;
         let pixels = picture::bytes(&image, &scene, picture::SIZE)?;
         std::fs::create_dir_all(&self.output).map_err(|source| FileError::Write {
@@ -84,19 +102,14 @@ impl Demo {
         write_bytes_whole(&image, &pixels)?;
         write_reconstruction(
             &self.output.join("mesh.npz"),
-            &parameters,
-            &outcome,
+            parameters,
+            outcome,
             outcome.is_verified(),
         )?;
-        let input = json!({ "surface": surface.name(), "scalar": cloud.scalar_name() });
-        let report = pretty(&report(&outcome, input));
+        let report = pretty(&report(outcome, input));
         write_bytes_whole(self.output.join("report.json"), report.as_bytes())?;
         drop(progress);
-        say(format!(
-            "done in       {:.1} s\n\nOpen {} in a browser to turn it. Beside it: picture.png, mesh.npz, report.json.",
-            start.elapsed().as_secs_f64(),
-            page.display()
-        ))
+        Ok(page)
     }
 
     /// The folder above must be there, and the folder itself must not be a file.

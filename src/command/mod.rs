@@ -7,6 +7,7 @@ mod check;
 mod choice;
 mod compare;
 mod compare_plot;
+mod compare_table;
 mod completions;
 pub mod convert;
 mod cost;

@@ -89,24 +89,26 @@ impl Surroundings {
         if !clear || members.len() + 1 < 2 * TERMS {
             return false;
         }
-        let width = self.width;
-        let Scratch {
+        scratch.offsets.clear();
+        scratch.offsets.resize(self.width, 0.0);
+        for &m in members {
+            let place = self.place(m).iter().zip(origin);
+            scratch.offsets.extend(place.map(|(x, o)| (x - o) / radius));
+        }
+        scratch.is_one_sheet(self.width, FLAT * self.dl / radius)
+    }
+}
+
+impl Scratch {
+    /// Whether a quadratic height over two directions follows all offsets within `tolerance`, in every coordinate.
+    fn is_one_sheet(&mut self, width: usize, tolerance: f64) -> bool {
+        let Self {
             offsets,
             ends,
             image,
             rows,
             right,
-        } = scratch;
-        offsets.clear();
-        offsets.resize(width, 0.0);
-        for &m in members {
-            offsets.extend(
-                self.place(m)
-                    .iter()
-                    .zip(origin)
-                    .map(|(x, o)| (x - o) / radius),
-            );
-        }
+        } = self;
         if !tangents(width, offsets, ends, image) {
             return false;
         }
@@ -130,7 +132,7 @@ impl Surroundings {
         for r in right.iter_mut() {
             factor.solve_mut(r);
         }
-        let limit = (FLAT * self.dl / radius).powi(2);
+        let limit = tolerance.powi(2);
         offsets
             .chunks_exact(width)
             .zip(rows.iter())
