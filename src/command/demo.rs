@@ -3,10 +3,11 @@
 use super::failure::Failure;
 use super::findings::{Findings, pretty};
 use super::number::counted;
+use super::outcome::{findings, reasons, report, write_reconstruction};
 use super::paper::paper_parameters;
 use super::parameters::MethodName;
 use super::picture;
-use super::reconstruct::{findings, reasons, reconstruct, report, write_reconstruction};
+use super::reconstruct::reconstruct;
 use super::terminal::{Progress, complain, say};
 use clap::Args;
 use crosscap::{Outcome, Parameters};

@@ -2,8 +2,8 @@
 
 use super::failure::Failure;
 use super::findings::pretty;
+use super::outcome::{findings, report};
 use super::picture;
-use super::reconstruct::{findings, report};
 use super::terminal::complain;
 use crosscap::refusal::{FaultKind, Refusal};
 use crosscap_backends::euclidean::EuclideanOracle;
