@@ -6,6 +6,7 @@ use crosscap::algorithms::chart::ClassicalScaling;
 use crosscap::algorithms::homology::homology;
 use crosscap::algorithms::predicate::PlanarPredicate;
 use crosscap::algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
+use crosscap::algorithms::tuning::FrontTuning;
 use crosscap::core::{CellNeighborhood, SparseDistances, StratifiedLandmarks, Triangulator};
 
 /// Great-circle distances of `n` places spread over the unit sphere: stands for a measured matrix.
@@ -70,6 +71,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         largest_circumradius: f64::INFINITY,
         repair: true,
         rules: Rules::MEASURED,
+        tuning: &FrontTuning::MEASURED,
     }
     .triangulate(&waist)?;
     let found = homology(&triangulation.complex)?;

@@ -15,6 +15,7 @@ use crosscap_algorithms::stratify::{
 };
 use crosscap_algorithms::surfaces::{Random, RigidMotion, embed, scaled};
 use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
+use crosscap_algorithms::tuning::FrontTuning;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::linear_program::LinearProgramTest;
 use crosscap_core::{Scalar, StratifiedLandmarks, Triangulator};
@@ -355,6 +356,7 @@ fn triangulated<S: Scalar>(waist: &StratifiedLandmarks<S>) -> Complex {
         largest_circumradius: f64::INFINITY,
         repair: true,
         rules: Rules::MEASURED,
+        tuning: &FrontTuning::MEASURED,
     };
     triangulator.triangulate(waist).unwrap().complex
 }

@@ -28,3 +28,4 @@ mod spectrum;
 pub mod stratify;
 pub mod surfaces;
 pub mod triangulate;
+pub mod tuning;

@@ -18,6 +18,7 @@ mod failure;
 pub mod findings;
 pub mod layout;
 mod number;
+pub mod outcome;
 mod output;
 pub mod overlay;
 mod paper;

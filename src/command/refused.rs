@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::findings::pretty;
-use super::reconstruct::{findings, report};
+use super::outcome::{findings, report};
 use super::terminal::complain;
 use super::{overlay, picture};
 use crosscap::refusal::{FaultKind, Refusal};

@@ -54,7 +54,7 @@ struct Parts {
     parameters: Parameters,
     tuning: Tuning,
     limits: Limits,
-    models: Vec<Box<dyn SingularityModel>>,
+    models: Models,
     estimator: Option<Box<dyn DimensionEstimator<Scalar = f64>>>,
     selector: Box<dyn LandmarkSelector<Scalar = f64>>,
     chart: Box<dyn LocalChart>,
@@ -68,6 +68,30 @@ struct Parts {
     interrupt: Interrupt,
 }
 
+/// Models that compete.
+enum Models {
+    /// Those that the parameters name.
+    Named(Vec<Box<dyn SingularityModel>>),
+    /// Others.
+    Own(Vec<Box<dyn SingularityModel>>),
+}
+
+impl Models {
+    fn named(parameters: &Parameters, tuning: &Tuning) -> Result<Self, Error> {
+        let Parameters { models, dp, ep, .. } = parameters;
+        let made = models
+            .iter()
+            .map(|name| name.tuned(*dp, *ep, &tuning.models));
+        Ok(Self::Named(made.collect::<Result<_, _>>()?))
+    }
+
+    fn all(&self) -> &[Box<dyn SingularityModel>] {
+        match self {
+            Self::Named(models) | Self::Own(models) => models,
+        }
+    }
+}
+
 impl Pipeline {
     /// The default parts for these parameters: PCA, two planes, random landmarks, classical
     /// scaling, exact planar predicate, largest angle.
@@ -77,11 +101,7 @@ impl Pipeline {
     pub fn new(parameters: Parameters) -> Result<Self, Error> {
         parameters.check()?;
         let parts = Parts {
-            models: parameters
-                .models
-                .iter()
-                .map(|name| name.model(parameters.dp, parameters.ep))
-                .collect::<Result<_, _>>()?,
+            models: Models::named(&parameters, &Tuning::MEASURED)?,
             estimator: None,
             selector: Box::new(RandomGreedy::new()),
             chart: Box::new(ClassicalScaling),
@@ -109,7 +129,7 @@ impl Pipeline {
 
     /// Singularity models that compete instead of those that the parameters name.
     pub fn models(mut self, models: Vec<Box<dyn SingularityModel>>) -> Self {
-        self.parts.models = models;
+        self.parts.models = Models::Own(models);
         self
     }
 
@@ -178,14 +198,24 @@ impl Pipeline {
         self
     }
 
-    /// Other numbers than those that the program runs with.
+    /// Other numbers than those that the program runs with. Models of your own have theirs in them.
     pub fn tuning(mut self, tuning: Tuning) -> Self {
+        // The parameters were checked at the beginning, so that their models can be made.
+        if let (Models::Named(_), Ok(models)) = (
+            &self.parts.models,
+            Models::named(&self.parts.parameters, &tuning),
+        ) {
+            self.parts.models = models;
+        }
         self.parts.tuning = tuning;
         self
     }
 
     /// A metric of your own for the analysis, on the rows of the input: neighborhoods, landmarks, cells.
     /// Neighborhoods are found by looking at every point. Coordinates still come from the cloud.
+    ///
+    /// Charts follow it: their distances are those of this metric too, unless
+    /// [`triangulation_metric`](Self::triangulation_metric) says otherwise.
     pub fn analysis_metric(mut self, metric: Box<dyn MetricSpace<Scalar = f64>>) -> Self {
         self.parts.analysis_metric = Some(Custom::new(CheckedMetric::new(metric)));
         self
@@ -314,6 +344,7 @@ impl Parts {
             } else {
                 Rules::MEASURED
             },
+            tuning: &self.tuning.front,
         }
     }
 }

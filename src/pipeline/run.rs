@@ -169,10 +169,18 @@ impl Parts {
 
     /// What measures the charts.
     fn charts<'g>(&'g self, prepared: &'g Prepared<'_>) -> ChartSpace<'g, f64> {
-        match (&self.chart_metric, prepared.given) {
-            (Some(own), _) => ChartSpace::Metric(custom(own)),
-            (None, Some(given)) => ChartSpace::Metric(given),
-            (None, None) => prepared.engines.charts(),
+        if let Some(own) = &self.chart_metric {
+            return ChartSpace::Metric(custom(own));
+        }
+        if let Some(given) = prepared.given {
+            return ChartSpace::Metric(given);
+        }
+        // Charts follow the metric of the analysis unless another was named; straight lines are drawn between the places
+        // that points on curves are moved to.
+        let followed = self.parameters.spaces.tri_metric.is_none();
+        match self.analysis_metric.as_ref().map(custom) {
+            Some(own) if followed && !own.is_straight() => ChartSpace::Metric(own),
+            _ => prepared.engines.charts(),
         }
     }
 
@@ -199,7 +207,7 @@ impl Parts {
             analyzer: Analyzer {
                 space,
                 estimator,
-                models: &self.models,
+                models: self.models.all(),
                 execute: threads,
                 tuning: &self.tuning,
             },
@@ -343,7 +351,7 @@ impl Parts {
             unused_landmarks: &prepared.rows.in_input(&dropped),
             special_points: &special,
             closed: self.parameters.boundary.is_empty()
-                && !self.models.iter().any(|m| m.finds_boundary()),
+                && !self.models.all().iter().any(|m| m.finds_boundary()),
             faithful: self.parameters.spaces.metric != MetricName::Lifted,
             limits: self.limits.clone(),
             ..CertificateOptions::default()

@@ -16,24 +16,27 @@
 mod analysis;
 mod atlas;
 mod cells;
+mod charts;
 mod distances;
 mod landmarks;
+mod producer;
 mod published;
 mod refine;
 mod site;
 mod skeleton;
 mod strata;
+mod stratification;
 mod stratifier;
-mod tuning;
 mod waist;
 
+pub use crate::tuning::{AnalysisTuning, CellTuning, RefinementTuning, SkeletonTuning, Tuning};
 pub use analysis::{Analysis, AnalysisOptions, Analyzer, ModelCounts};
+pub use charts::ChartSpace;
+pub use producer::WaistProducer;
 pub use published::{Published, PublishedCut, PublishedMethod};
 pub use refine::Refinement;
 pub use site::{FitUsed, On, Site, StratumKind};
 pub use strata::Strata;
+pub use stratification::{PointStratum, Stratification, StratifyCounts};
 pub use stratifier::{Cells, Ground, Stratifier};
-pub use tuning::{AnalysisTuning, CellTuning, RefinementTuning, SkeletonTuning, Tuning};
-pub use waist::{
-    ChartSpace, Cut, PointStratum, Stratification, StratifyCounts, StratifyOptions, WaistProducer,
-};
+pub use waist::{Cut, StratifyOptions};

@@ -1,7 +1,7 @@
 //! Landmarks where the surface bends more than triangles of the usual size can follow.
 
-use super::tuning::RefinementTuning;
-use super::waist::WaistProducer;
+use super::producer::WaistProducer;
+use crate::tuning::RefinementTuning;
 use crosscap_core::{Complex, Neighbor, NeighborhoodOracle, Scalar};
 
 /// A triangulation beside the points that it should follow.

@@ -1,7 +1,9 @@
 //! Ways from a cloud to the waist.
 
 use super::analysis::{Analysis, AnalysisOptions, Analyzer};
-use super::waist::{ChartSpace, Cut, StratifyOptions, WaistProducer};
+use super::charts::ChartSpace;
+use super::producer::WaistProducer;
+use super::waist::{Cut, StratifyOptions};
 use crosscap_core::{Error, LandmarkSelector, LocalChart, Scalar};
 
 /// What a stratifier works with: the cloud, what was asked for, and plug-ins that it may use.

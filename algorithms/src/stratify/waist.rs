@@ -3,13 +3,14 @@
 use super::analysis::{Analysis, Analyzer};
 use super::atlas::Reference;
 use super::cells::{Contacts, Labels, Neighborhoods};
+use super::charts::ChartSpace;
 use super::distances::within_charts;
 use super::landmarks;
+use super::producer::WaistProducer;
 use super::skeleton::Skeleton;
 use super::strata::Strata;
-use crate::space::Space;
-use crosscap_core::{Error, LandmarkSelector, Link, PointCloud, Scalar, StratifiedLandmarks};
-use serde::{Deserialize, Serialize};
+use super::stratification::Stratification;
+use crosscap_core::{Error, LandmarkSelector, PointCloud, Scalar, StratifiedLandmarks};
 
 /// Parameters of the stratification.
 #[derive(Clone, Debug)]
@@ -34,155 +35,6 @@ impl StratifyOptions {
             }
         }
         Ok(())
-    }
-}
-
-/// What the stratification counted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub struct StratifyCounts {
-    /// Landmarks.
-    pub landmarks: usize,
-    /// Landmarks on curves and points.
-    pub curve_landmarks: usize,
-    /// Landmarks that are points where curves end.
-    pub corners: usize,
-    /// Chain edges.
-    pub curve_edges: usize,
-    /// Edges of the neighbor graph that the labels cut.
-    pub cut_edges: usize,
-    /// Mean number of members of a neighborhood.
-    pub mean_members: f64,
-}
-
-/// A landmark at a 0-stratum, with what meets there by the model that found it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PointStratum {
-    /// The landmark.
-    pub landmark: u32,
-    /// Number of curves that end there.
-    pub curves: usize,
-    /// Number of cells that have it at their rim.
-    pub cells: usize,
-    /// Its link, where the model knows it.
-    pub link: Option<Link>,
-}
-
-/// The waist, and what ties it to the points.
-#[derive(Clone, Debug)]
-pub struct Stratification<S> {
-    /// What the triangulator takes.
-    pub waist: StratifiedLandmarks<S>,
-    /// Row of the input that each landmark stands for.
-    pub rows: Vec<usize>,
-    /// The 0-strata that a model found.
-    pub points: Vec<PointStratum>,
-    /// Counts for the report.
-    pub counts: StratifyCounts,
-}
-
-impl<S: Scalar> Stratification<S> {
-    /// A waist and the rows that its landmarks stand for, counted.
-    pub fn new(waist: StratifiedLandmarks<S>, rows: Vec<usize>) -> Self {
-        let members: usize = waist.neighborhoods.iter().map(|x| x.members.len()).sum();
-        let of = |least: u8| waist.strata.iter().filter(|&&d| d <= least).count();
-        Self {
-            counts: StratifyCounts {
-                landmarks: rows.len(),
-                curve_landmarks: of(1),
-                corners: of(0),
-                curve_edges: waist.curve_edges.len(),
-                cut_edges: 0,
-                mean_members: members as f64 / waist.neighborhoods.len().max(1) as f64,
-            },
-            waist,
-            rows,
-            points: Vec::new(),
-        }
-    }
-
-    /// Whether this can be what a producer of waists named `plugin` makes of so many `points`: every landmark stands for a
-    /// row of its own, and strata of dimension 0 are at landmarks. What the waist itself must satisfy,
-    /// [`StratifiedLandmarks::check`] says.
-    ///
-    /// # Errors
-    /// [`Error::Law`] for the first landmark of which it is not true.
-    pub fn check(&self, plugin: &str, points: usize) -> Result<(), Error> {
-        let broken = |landmark: usize, detail: String| {
-            Err(Error::Law {
-                plugin: plugin.into(),
-                law: "answer: every landmark stands for a row of its own, and points are at landmarks",
-                point: landmark,
-                detail,
-            })
-        };
-        let count = self.waist.strata.len();
-        if self.rows.len() != count {
-            let detail = format!("{} rows for {count} landmarks", self.rows.len());
-            return broken(0, detail);
-        }
-        let mut seen = vec![false; points];
-        for (k, &row) in self.rows.iter().enumerate() {
-            match seen.get_mut(row) {
-                Some(taken) if !*taken => *taken = true,
-                Some(_) => return broken(k, format!("row {row} has a landmark already")),
-                None => return broken(k, format!("row {row} of {points}")),
-            }
-        }
-        let stray = self.points.iter().find(|p| {
-            let stratum = self.waist.strata.get(p.landmark as usize);
-            stratum != Some(&0)
-        });
-        match stray {
-            Some(p) => {
-                let k = p.landmark as usize;
-                broken(
-                    k,
-                    format!("a point at landmark {k} of {count}, which is none"),
-                )
-            }
-            None => Ok(()),
-        }
-    }
-}
-
-/// What says how far a chart reaches, and measures the distances in it.
-#[derive(Clone, Copy)]
-pub enum ChartSpace<'a, S: Scalar> {
-    /// Straight lines between the places of the points, those on curves moved onto them.
-    Places,
-    /// A metric on the rows of the input.
-    Metric(Space<'a, S>),
-}
-
-/// Makes waists of one cloud at one resolution: the first, and others with more landmarks.
-///
-/// # Why it has this shape
-/// Triangles show where landmarks are missing, so a waist is asked for more than once; what is the same
-/// every time (strata, curves, the landmarks that were chosen) belongs into the producer, what depends on the landmarks
-/// into [`waist`](Self::waist). Coordinates are not in a waist, but a mesh has them: the
-/// producer says where the rows lie that its landmarks stand for.
-///
-/// # Laws
-/// - *answer*: a waist that passes [`Stratification::check`];
-/// - *extra*: a row of `extra` that [may be added](Self::may_add) is a landmark;
-/// - *independence*: a waist does not depend on those that were made before.
-pub trait WaistProducer<S: Scalar> {
-    /// The waist, with the rows `extra` as landmarks whatever their separation, those that may not be added left out.
-    ///
-    /// # Errors
-    /// Those of the producer.
-    fn waist(&self, extra: &[usize]) -> Result<Stratification<S>, Error>;
-
-    /// Whether a row may be a landmark beside those that were chosen. As it stands none may, and where triangles stray from
-    /// the points they stay as they are.
-    fn may_add(&self, _row: usize) -> bool {
-        false
-    }
-
-    /// Places of all rows, where some of them were moved; `None` where every row is at its point.
-    fn places(&self) -> Option<&PointCloud<f64>> {
-        None
     }
 }
 

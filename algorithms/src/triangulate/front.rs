@@ -3,8 +3,6 @@
 use super::parts::AdvancingFront;
 use crosscap_core::{Scalar, StratifiedLandmarks};
 
-/// Two landmarks of a curve closer than this many steps along it are joined by chain edges only.
-const SHORTCUT_STEPS: usize = 4;
 /// The growing complex.
 pub(super) struct Front<'a, S: Scalar> {
     pub(super) parts: &'a AdvancingFront<'a>,
@@ -106,7 +104,7 @@ impl<'a, S: Scalar> Front<'a, S> {
         }
         let mut reached = vec![a];
         let mut from = 0;
-        for _ in 0..SHORTCUT_STEPS {
+        for _ in 0..self.parts.tuning.shortcut_steps {
             let until = reached.len();
             for k in from..until {
                 let v = reached[k];

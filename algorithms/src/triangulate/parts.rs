@@ -1,6 +1,7 @@
 //! What the advancing front is put together from.
 
 use super::Rules;
+use crate::tuning::FrontTuning;
 use crosscap_core::{CompatibilityTest, LocalChart, TriangleRule};
 
 /// Triangulates the waist by an advancing front of stars (Martin & Watson 2011, section 2.2.2, with repairs).
@@ -20,4 +21,6 @@ pub struct AdvancingFront<'a> {
     pub repair: bool,
     /// What a triangle must satisfy beside being compatible.
     pub rules: Rules,
+    /// The numbers that decide.
+    pub tuning: &'a FrontTuning,
 }

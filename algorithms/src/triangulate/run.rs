@@ -11,13 +11,6 @@ use crosscap_core::{
 use std::collections::VecDeque;
 use std::sync::atomic::AtomicU32;
 
-/// Repairs tried in all: a constant and a share of the landmarks. Data that no triangulation fits would
-/// otherwise be torn up star by star.
-const ATTEMPTS: usize = 400;
-const ATTEMPT_SHARE: usize = 4;
-/// Passes over the stars of curve landmarks: a repair of one may open another.
-const CURVE_PASSES: usize = 4;
-
 impl<S: Scalar> Triangulator<S> for AdvancingFront<'_> {
     /// Every landmark of a cell is visited and its star closed, the front
     /// advancing from neighbor to neighbor; then the stars of curve landmarks are completed, cell by cell.
@@ -100,7 +93,7 @@ pub(super) struct Run<'r, 'a, S: Scalar> {
 
 impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
     fn new(watch: &'r Watch, front: &'r mut Front<'a, S>) -> Self {
-        let input = front.input;
+        let (input, tuning) = (front.input, front.parts.tuning);
         let count = input.strata.len();
         let mut home = vec![usize::MAX; count];
         let mut sectors: Vec<Vec<usize>> = vec![Vec::new(); count];
@@ -121,7 +114,7 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
             kept: Vec::new(),
             counts: TriangulationCounts::default(),
             incomplete: Vec::new(),
-            attempts: ATTEMPTS + count / ATTEMPT_SHARE,
+            attempts: tuning.attempts + count / tuning.landmarks_per_attempt.max(1),
         }
     }
 
@@ -178,7 +171,7 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
     fn close_curves(&mut self) -> Result<Vec<(u32, usize)>, Error> {
         let mut open = Vec::new();
         let passes = if self.front.parts.rules.curve_stars {
-            CURVE_PASSES
+            self.front.parts.tuning.curve_passes
         } else {
             0
         };

@@ -293,7 +293,7 @@ fn laws<S: Scalar>(
     let inputs = (flat_samples(), 0.3..3.0_f64, any::<bool>(), any::<bool>());
     found.put(
         BATCH.holds(settings, &inputs, |(sample, radius, each, straight)| {
-            batch::<S>(estimator, &sample.cloud, *radius, *each, *straight)
+            batch(estimator, &sample.cloud, *radius, *each, *straight)
         }),
     );
     found.end()

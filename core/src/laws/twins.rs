@@ -55,7 +55,7 @@ fn every_law_is_in_the_guide() {
             let mut cells = line.strip_prefix("| ")?.split(" | ");
             Some((cells.next()?, cells.next()?))
         })
-        .filter(|row| !["about", "---", "a mesh"].contains(&row.0))
+        .filter(|row| !["about", "---", "a mesh", "WaistProducer"].contains(&row.0))
         .collect();
     let mut stated: Vec<(&str, &str)> = super::all().iter().map(|l| (l.subject, l.name)).collect();
     listed.sort_unstable();

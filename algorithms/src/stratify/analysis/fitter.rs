@@ -6,7 +6,7 @@ use crate::audit::Faults;
 use crate::execute::Execute;
 use crate::principal::PrincipalFrame;
 use crate::space::Space;
-use crate::stratify::tuning::Tuning;
+use crate::tuning::Tuning;
 use crosscap_core::{
     DimensionEstimator, LocalPoints, Neighbor, PointCloud, Scalar, SingularityModel,
 };

@@ -13,10 +13,10 @@ pub(super) use fitter::{Fitter, Scratch};
 pub use ledger::ModelCounts;
 
 use super::site::{On, Site, StratumKind, Witness};
-use super::tuning::Tuning;
 use crate::audit;
 use crate::execute::{self, Execute};
 use crate::space::Space;
+use crate::tuning::Tuning;
 use crosscap_core::{BallDimension, DimensionEstimator, Error, Radii, Scalar, SingularityModel};
 use explain::{Kind, Verdict};
 use groups::Asked;
@@ -291,16 +291,21 @@ impl<S: Scalar> Fitter<'_, S> {
         out.sort();
         self.faults.none()?;
         out.mean_neighbors = total as f64 / n.max(1) as f64;
-        let limit = self.tuning.analysis.unexplained_share * n as f64;
-        if out.unexplained.len() as f64 > limit {
-            let point = out.unexplained[0];
-            return Err(Error::Dimension {
+        self.few_are_unexplained(out)
+    }
+
+    /// # Errors
+    /// [`Error::Dimension`] where so many points are explained by no model that the radius must be unfit.
+    fn few_are_unexplained(&self, out: &Analysis) -> Result<(), Error> {
+        let limit = self.tuning.analysis.unexplained_share * out.sites.len() as f64;
+        match out.unexplained.first() {
+            Some(&point) if out.unexplained.len() as f64 > limit => Err(Error::Dimension {
                 point,
                 dimension: out.dimensions[point] as usize,
                 count: out.unexplained.len(),
                 parameter: "eps",
-            });
+            }),
+            _ => Ok(()),
         }
-        Ok(())
     }
 }

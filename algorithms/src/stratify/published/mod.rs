@@ -21,9 +21,10 @@ mod waist;
 pub use waist::PublishedCut;
 
 use super::analysis::{Analysis, Analyzer, Fitter, Scratch, marked};
+use super::charts::ChartSpace;
+use super::producer::WaistProducer;
 use super::site::{FitUsed, On, Site, StratumKind};
 use super::stratifier::{Ground, Stratifier};
-use super::waist::{ChartSpace, WaistProducer};
 use crate::execute;
 use crosscap_core::{Error, LandmarkSelector, LocalChart, Radii, Scalar};
 

@@ -3,10 +3,12 @@
 use super::Published;
 use crate::execute;
 use crate::stratify::analysis::{Analysis, Analyzer, Fitter, Scratch};
+use crate::stratify::charts::ChartSpace;
 use crate::stratify::distances::{lengths, pairs};
+use crate::stratify::producer::WaistProducer;
 use crate::stratify::site::StratumKind;
 use crate::stratify::strata::Strata;
-use crate::stratify::waist::{ChartSpace, Stratification, WaistProducer};
+use crate::stratify::stratification::Stratification;
 use crosscap_core::{
     CellNeighborhood, CurveEdge, Error, LandmarkSelector, LocalChart, Scalar, SparseDistances,
     StratifiedLandmarks,

@@ -4,6 +4,15 @@
 //! separation dl), so that none of them knows the unit of the data. What was measured is in the guide, chapter
 //! on decisions; what is not said there to be measured was chosen once and never varied.
 
+mod front;
+mod models;
+
+pub use front::FrontTuning;
+pub use models::{
+    BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,
+    TwoPlanesTuning, YJunctionTuning,
+};
+
 use serde::Serialize;
 
 /// All of them. [`Tuning::MEASURED`] is what the program runs with.
@@ -15,8 +24,12 @@ pub struct Tuning {
     pub skeleton: SkeletonTuning,
     /// Cells and the neighborhoods in them.
     pub cells: CellTuning,
+    /// Stars that cannot be closed.
+    pub front: FrontTuning,
     /// Landmarks added where triangles stray from the points.
     pub refinement: RefinementTuning,
+    /// When the program's own models believe a fit.
+    pub models: ModelTuning,
 }
 
 impl Tuning {
@@ -25,7 +38,9 @@ impl Tuning {
         analysis: AnalysisTuning::MEASURED,
         skeleton: SkeletonTuning::MEASURED,
         cells: CellTuning::MEASURED,
+        front: FrontTuning::MEASURED,
         refinement: RefinementTuning::MEASURED,
+        models: ModelTuning::MEASURED,
     };
 }
 
@@ -147,6 +162,9 @@ pub struct CellTuning {
     pub contact_reach: f64,
     /// Every point of a curve has a landmark or a labelling fit within this.
     pub curve_gap: f64,
+    /// Landmarks are on one sheet where a quadratic height follows them this closely: sheets that
+    /// are nearer to each other than that share no landmarks' spacing could tell apart.
+    pub flat: f64,
     /// Fewest members of a neighborhood. Where landmarks are sparse a chart of the usual radius misses
     /// triangles that it has to keep clear of: charts with fewer members are widened.
     pub least_members: usize,
@@ -163,6 +181,7 @@ impl CellTuning {
         contacts: 6,
         contact_reach: 2.0,
         curve_gap: 0.7,
+        flat: 0.1,
         least_members: 14,
         widening: 1.25,
         widenings: 2,
