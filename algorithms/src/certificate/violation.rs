@@ -358,6 +358,20 @@ impl Violation {
     }
 }
 
+/// A number as it is printed: probabilities are too small for decimals.
+struct Figure(f64);
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = *self;
+        if value != 0.0 && value.abs() < 0.01 {
+            write!(f, "{value:.1e}")
+        } else {
+            write!(f, "{value:.4}")
+        }
+    }
+}
+
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.count, self.kind.meaning())?;
@@ -365,7 +379,12 @@ impl fmt::Display for Violation {
             write!(f, " ({})", self.detail)?;
         }
         if let (Some(worst), Some(limit)) = (self.worst, self.limit) {
-            write!(f, ", worst {worst:.4} against a limit of {limit:.4}")?;
+            write!(
+                f,
+                ", worst {} against a limit of {}",
+                Figure(worst),
+                Figure(limit)
+            )?;
         }
         if let Some(first) = self.places.first() {
             write!(f, "; first at {first}")?;

@@ -32,10 +32,13 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// Whether chance is no explanation.
-    pub(super) fn is_significant(&self, significance: f64) -> bool {
-        let times = if self.joint { JOINTS } else { 1.0 };
-        self.p < times * significance
+    /// The probability below which chance is no explanation, where it is `significance` for everything else.
+    pub(super) fn limit(&self, significance: f64) -> f64 {
+        if self.joint {
+            JOINTS * significance
+        } else {
+            significance
+        }
     }
 }
 
@@ -88,7 +91,8 @@ pub(super) fn stretches(mesh: &Mesh, incidence: &Incidence, feet: &Footprints) -
             });
         }
     }
-    all.sort_by(|a, b| a.p.total_cmp(&b.p).then(a.edge.cmp(&b.edge)));
+    let rank = |s: &Stretch| s.p / s.limit(1.0);
+    all.sort_by(|a, b| rank(a).total_cmp(&rank(b)).then(a.edge.cmp(&b.edge)));
     all
 }
 

@@ -56,12 +56,25 @@ pub struct FaithfulReport {
     pub offset: Option<Offset>,
     /// Median scatter of the points about quadratic patches, in local spacings.
     pub scatter: f64,
+    /// Landmark separation below which all that is bridged, joined or merged would stay apart, unit of the data; none where
+    /// nothing is.
+    pub separation_needed: Option<f64>,
     /// What is wrong.
     pub violations: Vec<Violation>,
 }
 
+impl FaithfulReport {
+    /// Something would stay apart below this landmark separation only.
+    fn needs(&mut self, separation: f64) {
+        let before = self.separation_needed.unwrap_or(f64::INFINITY);
+        self.separation_needed = Some(separation.min(before));
+    }
+}
+
 /// Width in landmark separations of a gap that a mesh leaves open: its boundary then has six edges and more.
 const RESOLVED: f64 = 2.5;
+/// Length in landmark separations of a stretch without points that a curve does not bridge.
+const ENDED: f64 = 2.0;
 
 pub(super) fn check(
     search: &Search<'_>,
@@ -79,6 +92,9 @@ pub(super) fn check(
     let gaps = search.run(significance);
     report.largest_gap = gaps.first().cloned();
     let bridged: Vec<&Gap> = gaps.iter().filter(|g| g.p < significance).collect();
+    for gap in &bridged {
+        report.needs(gap.size / RESOLVED);
+    }
     if let Some(worst) = bridged.first() {
         let mut triangles: Vec<u32> = bridged.iter().map(|g| g.triangle).collect();
         triangles.sort_unstable();
@@ -109,8 +125,11 @@ pub(super) fn check(
 fn stretches_told(stretches: Vec<Stretch>, report: &mut FaithfulReport) {
     let bare: Vec<&Stretch> = stretches
         .iter()
-        .filter(|s| s.is_significant(report.significance))
+        .filter(|s| s.p < s.limit(report.significance))
         .collect();
+    for stretch in &bare {
+        report.needs(stretch.size / ENDED);
+    }
     if let Some(worst) = bare.first() {
         let places = bare.iter().map(|s| Place::Edge(s.edge)).collect();
         let detail = format!(
@@ -125,7 +144,10 @@ fn stretches_told(stretches: Vec<Stretch>, report: &mut FaithfulReport) {
             worst.p
         );
         let violation = Violation::at(ViolationKind::BareStretch, places, |_| worst.place.clone());
-        let told = violation.map(|v| v.measured(worst.p, report.significance).detailed(detail));
+        let told = violation.map(|v| {
+            v.measured(worst.p, worst.limit(report.significance))
+                .detailed(detail)
+        });
         report.violations.extend(told);
     }
     report.largest_stretch = stretches.into_iter().next();
@@ -137,6 +159,9 @@ fn sheets_told(mesh: &Mesh, found: sheets::Found, report: &mut FaithfulReport) {
     let significance = report.significance;
     report.scatter = found.scatter;
     let merged: Vec<&Merged> = found.merged.iter().filter(|m| m.p < significance).collect();
+    for sheets in &merged {
+        report.needs(sheets.distance);
+    }
     if let Some(worst) = merged.first() {
         let places = merged.iter().map(|m| Place::Vertex(m.vertex)).collect();
         let detail = format!(
