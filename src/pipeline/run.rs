@@ -1,29 +1,25 @@
 //! The stages of a reconstruction, one after another.
 
-use super::mesh::{at_input_row, failures, mesh_of, special_points};
+use super::making::{Making, Triangulated};
+use super::mesh::failures;
 use super::progress::Progress;
 use super::rows::Rows;
 use super::{Method, Outcome, Parameters, Parts, Pipeline, Report, Stage};
 use crate::spaces::{Engines, MetricName, Neighborhoods, custom, positions};
 use crate::watched::{Distortion, Watched};
-use crosscap_algorithms::certificate::{
-    Certificate, CertificateOptions, Verdict, certify, certify_by_distances,
-};
+use crosscap_algorithms::certificate::Verdict;
 use crosscap_algorithms::dimension::PrincipalComponents;
-use crosscap_algorithms::homology::{Homology, homology};
 use crosscap_algorithms::moments::{LocalDimension, MomentTree};
 use crosscap_algorithms::neighborhood::{
     FlatRadius, NearestCount, NeighborhoodPolicy, PolicyOracle, Surroundings,
 };
-use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::{
-    Analysis, AnalysisOptions, Analyzer, ChartSpace, Cut, Dimensions, Published, Refinement,
-    Stratification, StratifyOptions, WaistProducer,
+    Analysis, AnalysisOptions, Analyzer, ChartSpace, Cut, Dimensions, Published, StratifyOptions,
+    WaistProducer,
 };
-use crosscap_algorithms::triangulate::Triangulation;
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{DimensionEstimator, Error, LocalChart, Mesh, MetricSpace, PointCloud};
+use crosscap_core::{DimensionEstimator, Error, Mesh, MetricSpace, PointCloud};
 
 /// What a reconstruction is made of.
 pub(crate) struct Input<'i> {
@@ -34,27 +30,11 @@ pub(crate) struct Input<'i> {
 }
 
 /// A cloud ready for the stages, with what serves its metrics.
-struct Ground<'g> {
-    rows: Rows,
+pub(super) struct Ground<'g> {
+    pub(super) rows: Rows,
     boundary: Vec<usize>,
-    engines: Engines,
-    given: Option<Space<'g, f64>>,
-}
-
-/// A waist and what was made of it.
-struct Triangulated {
-    waist: Stratification<f64>,
-    triangulation: Triangulation,
-    /// Landmarks that were added.
-    added: usize,
-}
-
-/// A mesh and what is known of it.
-struct Judged {
-    mesh: Mesh,
-    homology: Homology,
-    pieces: Result<Pieces, PiecesError>,
-    certificate: Certificate,
+    pub(super) engines: Engines,
+    pub(super) given: Option<Space<'g, f64>>,
 }
 
 impl Pipeline {
@@ -106,10 +86,14 @@ impl Pipeline {
         progress.enter(Stage::Landmarks);
         let watched = Watched::new(parts.chart.as_ref(), &parts.interrupt);
         let producer = parts.producer(&ground, &analyzer, &analysis, published.as_ref())?;
-        let made = parts.triangulate(&ground, producer.as_ref(), &watched, &mut progress)?;
-
-        let places = producer.strata().places().unwrap_or(input.cloud);
-        let judged = parts.judge(&ground, places, &made, &mut progress)?;
+        let making = Making {
+            parts,
+            ground: &ground,
+            producer: producer.as_ref(),
+            chart: &watched,
+            places: producer.strata().places().unwrap_or(input.cloud),
+        };
+        let (made, judged) = making.mesh(&mut progress)?;
         // A star that stayed open in its own chart may be complete all the same; whether it is, the
         // certificate has seen edge by edge and link by link.
         let verified = matches!(judged.certificate.verdict(), Verdict::Verified);
@@ -210,7 +194,7 @@ impl Parts {
         } = &self.parameters;
         let usual = self.estimator.is_none()
             && self.analysis_metric.is_none()
-            && spaces.metric != MetricName::Geodesic
+            && !matches!(spaces.metric, MetricName::Geodesic | MetricName::Conformal)
             && spaces.neighborhoods == Neighborhoods::Radius;
         if *surface || !usual {
             return Ok(None);
@@ -275,73 +259,6 @@ impl Parts {
         )?))
     }
 
-    /// Triangulates a waist, and others with more landmarks where triangles stray from the points.
-    fn triangulate(
-        &self,
-        ground: &Ground<'_>,
-        producer: &dyn WaistProducer<f64>,
-        chart: &dyn LocalChart,
-        progress: &mut Progress<'_>,
-    ) -> Result<Triangulated, Error> {
-        let tuning = &self.tuning.refinement;
-        let mut extra: Vec<usize> = Vec::new();
-        let mut round = 0;
-        loop {
-            let waist = producer.waist(&extra)?;
-            progress.enter(Stage::Triangulation);
-            let triangulation = self
-                .triangulator(chart)
-                .triangulate(&waist.waist)
-                .map_err(|error| at_input_row(error, &waist.rows, &ground.rows.kept))?;
-            // What cannot be triangulated is not mended by more landmarks.
-            let open = triangulation.incomplete.len() as f64;
-            let sound = open <= tuning.open_share * waist.rows.len() as f64;
-            let mut added = Vec::new();
-            if sound && producer.takes_more() && round < tuning.rounds {
-                let refinement = Refinement {
-                    near: &ground.engines.euclidean,
-                    strata: producer.strata(),
-                    rows: &waist.rows,
-                    dl: self.parameters.dl,
-                    tuning,
-                };
-                added = refinement.rows_where_astray(&triangulation.complex);
-            }
-            if added.is_empty() {
-                return Ok(Triangulated {
-                    waist,
-                    triangulation,
-                    added: extra.len(),
-                });
-            }
-            extra.extend(added);
-            round += 1;
-            progress.enter(Stage::Landmarks);
-        }
-    }
-
-    /// The mesh of a triangulation, its homology and pieces, and the verdict.
-    fn judge(
-        &self,
-        ground: &Ground<'_>,
-        places: &PointCloud<f64>,
-        made: &Triangulated,
-        progress: &mut Progress<'_>,
-    ) -> Result<Judged, Error> {
-        progress.enter(Stage::Homology);
-        let complex = &made.triangulation.complex;
-        let mesh = mesh_of(complex, &made.waist, places, &ground.rows.kept)?;
-        let homology = homology(&mesh.complex)?;
-        let pieces = pieces(&mesh);
-        progress.enter(Stage::Certificate);
-        Ok(Judged {
-            certificate: self.certify(ground, &mesh, made),
-            mesh,
-            homology,
-            pieces,
-        })
-    }
-
     /// What the stages counted.
     fn report(&self, ground: &Ground<'_>, analysis: &Analysis, made: &Triangulated) -> Report {
         Report {
@@ -356,7 +273,7 @@ impl Parts {
             unexplained: analysis.unexplained().len(),
             models: analysis.models().to_vec(),
             landmarks: made.waist.counts,
-            added_landmarks: made.added,
+            added_landmarks: made.added.len(),
             triangulation: made.triangulation.counts,
             chart_distortion: Distortion::default(),
             graph: ground.engines.graph().cloned(),
@@ -365,28 +282,6 @@ impl Parts {
             tuning: self.tuning.clone(),
             seconds: Vec::new(),
             parameters: self.parameters.clone(),
-        }
-    }
-
-    fn certify(&self, ground: &Ground<'_>, mesh: &Mesh, made: &Triangulated) -> Certificate {
-        let dropped: Vec<usize> = (made.triangulation.dropped.iter())
-            .map(|&k| made.waist.rows[k as usize])
-            .collect();
-        let special = special_points(mesh, &made.waist, &ground.rows.kept);
-        let options = CertificateOptions {
-            points: Some(&ground.engines.cloud),
-            landmark_separation: Some(self.parameters.dl),
-            unused_landmarks: &ground.rows.in_input(&dropped),
-            special_points: &special,
-            closed: self.parameters.boundary.is_empty()
-                && !self.models.iter().any(|m| m.finds_boundary()),
-            faithful: self.parameters.spaces.metric != MetricName::Lifted,
-            limits: self.limits.clone(),
-            ..CertificateOptions::default()
-        };
-        match &ground.given {
-            None => ground.rows.named(certify(mesh, &options)),
-            Some(space) => certify_by_distances(mesh, space.metric(), space.oracle(), &options),
         }
     }
 }
