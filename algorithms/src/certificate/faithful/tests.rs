@@ -214,23 +214,3 @@ fn a_vertex_off_its_points() {
             .is_verified()
     );
 }
-
-/// The two faces of an edge of 45 degrees lie over each other, and are not one.
-#[test]
-fn faces_of_a_sharp_edge_are_not_merged() {
-    let folded = |rows: &PointCloud<f64>| {
-        let (sine, cosine) = std::f64::consts::FRAC_PI_4.sin_cos();
-        let fold = |p: &[f64]| match p[0] {
-            x if x > 0.0 => [-x * cosine, p[1], x * sine],
-            x => [x, p[1], 0.0],
-        };
-        PointCloud::new(3, rows.iter().flat_map(fold).collect()).unwrap()
-    };
-    let mut mesh = plate(|_, _| false);
-    mesh.vertices = folded(&mesh.vertices);
-    for seed in 20..23 {
-        let points = folded(&sample(seed, POINTS, |_, _| 1.0));
-        let right = judged(&mesh, &points);
-        assert!(right.verdict().is_verified(), "{right}");
-    }
-}

@@ -10,10 +10,6 @@ const NONE: u32 = u32::MAX;
 const ENOUGH: usize = 48;
 /// Most layers of triangles that are gathered for them.
 const LAYERS: usize = 8;
-/// Cosine of the greatest angle between two triangles of one sheet. Where a mesh turns by more, at a sharp edge, its two
-/// faces lie over each other without being one; a mesh that goes up and down between two sheets, which are nearer
-/// to each other than its edges are long, turns by less than 70 degrees.
-const TURN: f64 = 0.26;
 
 /// Triangles over ordinary edges, and points of triangles.
 pub(super) struct Wings<'a> {
@@ -26,8 +22,6 @@ pub(super) struct Wings<'a> {
     feet: Vec<u32>,
     seen: Vec<u32>,
     round: u32,
-    /// The corners of the triangles of the sheet that is gathered, all in the same sense.
-    sheet: Vec<[u32; 3]>,
 }
 
 impl<'a> Wings<'a> {
@@ -68,12 +62,11 @@ impl<'a> Wings<'a> {
             feet: order,
             seen: vec![0; count],
             round: 0,
-            sheet: Vec::new(),
         }
     }
 
     /// Calls `each` for every sheet at a vertex with the indices of the footprints about it, as many layers of triangles
-    /// as hold enough of them. A sheet does not go around a sharp edge.
+    /// as hold enough of them.
     pub fn at(&mut self, vertex: u32, mut each: impl FnMut(&[u32])) {
         let (mut layer, mut next, mut points) = (Vec::new(), Vec::new(), Vec::new());
         self.round += 1;
@@ -84,17 +77,16 @@ impl<'a> Wings<'a> {
             // the part of the star that hangs together over ordinary edges at the vertex
             layer.clear();
             layer.push(first);
-            self.sheet.clear();
-            self.sheet.push(self.mesh.complex.triangles[first as usize]);
-            let mut base = 0;
             self.seen[first as usize] = self.round;
             let mut k = 0;
             while k < layer.len() {
-                let t = layer[k];
+                let t = layer[k] as usize;
                 for side in 0..3 {
-                    let own = self.mesh.complex.triangles[t as usize][side] != vertex;
-                    if own && self.takes(k, t, side) {
-                        layer.push(self.beyond[t as usize][side]);
+                    let other = self.beyond[t][side];
+                    let own = self.mesh.complex.triangles[t][side] != vertex;
+                    if own && other != NONE && self.seen[other as usize] != self.round {
+                        self.seen[other as usize] = self.round;
+                        layer.push(other);
                     }
                 }
                 k += 1;
@@ -110,66 +102,17 @@ impl<'a> Wings<'a> {
                     break;
                 }
                 next.clear();
-                for (k, &t) in layer.iter().enumerate() {
-                    for side in 0..3 {
-                        if self.takes(base + k, t, side) {
-                            next.push(self.beyond[t as usize][side]);
+                for &t in &layer {
+                    for other in self.beyond[t as usize] {
+                        if other != NONE && self.seen[other as usize] != self.round {
+                            self.seen[other as usize] = self.round;
+                            next.push(other);
                         }
                     }
                 }
-                base += layer.len();
                 std::mem::swap(&mut layer, &mut next);
             }
             each(&points);
         }
-    }
-
-    /// Takes the triangle beyond a side of another one into the sheet, if it is in none and turns against no triangle of
-    /// it; `place` is that of the other one in the sheet.
-    fn takes(&mut self, place: usize, t: u32, side: usize) -> bool {
-        let other = self.beyond[t as usize][side];
-        if other == NONE || self.seen[other as usize] == self.round {
-            return false;
-        }
-        let triangles = &self.mesh.complex.triangles;
-        let opposite = triangles[t as usize][side];
-        let known = self.sheet[place];
-        // The shared side in the sense of the sheet, and the corner beyond it.
-        let at = (0..3).find(|&k| known[k] == opposite).unwrap_or(0);
-        let [p, q] = [known[(at + 1) % 3], known[(at + 2) % 3]];
-        let mut beyond = triangles[other as usize]
-            .into_iter()
-            .filter(|&v| v != p && v != q);
-        let Some(r) = beyond.next() else {
-            return false;
-        };
-        let new = [q, p, r];
-        if self.sheet.iter().any(|&old| self.turns(old, new)) {
-            return false;
-        }
-        self.seen[other as usize] = self.round;
-        self.sheet.push(new);
-        true
-    }
-
-    /// Whether two triangles with corners in the same sense turn against each other by more than those of one
-    /// sheet, by the inner product of their bivectors; not for triangles without area.
-    fn turns(&self, old: [u32; 3], new: [u32; 3]) -> bool {
-        let corner = |v: u32| self.mesh.vertices.point(v as usize);
-        let inner = |s: [u32; 3], t: [u32; 3]| {
-            let [a, b, c] = s.map(corner);
-            let [d, e, f] = t.map(corner);
-            let (mut uw, mut ux, mut vw, mut vx) = (0.0, 0.0, 0.0, 0.0);
-            for k in 0..a.len() {
-                let (u, v) = (b[k] - a[k], c[k] - a[k]);
-                let (w, x) = (e[k] - d[k], f[k] - d[k]);
-                uw += u * w;
-                ux += u * x;
-                vw += v * w;
-                vx += v * x;
-            }
-            uw * vx - ux * vw
-        };
-        inner(old, new) < TURN * (inner(old, old) * inner(new, new)).sqrt()
     }
 }
