@@ -112,6 +112,16 @@ impl Density {
         })
     }
 
+    /// The density of points that lie everywhere as they do in the middle of all.
+    pub(super) fn even(&self) -> Self {
+        Self {
+            dense: self.spacing,
+            sparse: self.spacing,
+            reach: self.usual_reach,
+            ..self.clone()
+        }
+    }
+
     /// Fewest points that are worked on: what one neighborhood needs.
     pub const LEAST: usize = 8;
 }

@@ -46,16 +46,17 @@ impl GraphArguments {
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Metrics")]
 pub struct SpaceArguments {
-    /// Distances of the analysis: euclidean, geodesic or lifted
+    /// Distances of the analysis: euclidean, geodesic, conformal or lifted
     ///
-    /// Decides on neighborhoods, landmarks and cells. geodesic: shortest paths through a graph of neighbors. lifted:
+    /// Decides on neighborhoods, landmarks and cells. geodesic: shortest paths through a graph of neighbors. conformal:
+    /// the same in the spacing of the points, for closed surfaces sampled unevenly. lifted:
     /// position and tangent plane together, which takes crossing sheets apart: the mesh is that of the surface before
     /// it was made to cross itself.
     /// [default: euclidean]
     #[arg(long, hide_short_help = true, value_name = "NAME")]
     pub metric: Option<MetricName>,
 
-    /// Distances of the charts: euclidean, geodesic or lifted [default: those of the analysis]
+    /// Distances of the charts: euclidean, geodesic, conformal or lifted [default: those of the analysis]
     #[arg(
         long,
         hide_short_help = true,

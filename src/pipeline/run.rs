@@ -1,30 +1,24 @@
 //! The stages of a reconstruction, one after another.
 
-use super::mesh::{at_input_row, failures, mesh_of, special_points};
+use super::making::{Making, Triangulated};
+use super::mesh::failures;
 use super::progress::Progress;
 use super::report::PluginNames;
 use super::rows::Rows;
 use super::{Outcome, Parameters, Parts, Pipeline, Report, Stage};
-use crate::spaces::{Engines, MetricName, Neighborhoods, custom, positions};
+use crate::spaces::{Engines, Neighborhoods, custom, positions};
 use crate::watched::{Distortion, Watched};
-use crosscap_algorithms::certificate::{
-    Certificate, CertificateOptions, Verdict, certify, certify_by_distances,
-};
+use crosscap_algorithms::certificate::Verdict;
 use crosscap_algorithms::dimension::PrincipalComponents;
-use crosscap_algorithms::homology::{Homology, homology};
 use crosscap_algorithms::neighborhood::{
     FlatRadius, NearestCount, NeighborhoodPolicy, PolicyOracle, Surroundings,
 };
-use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::{
-    Analysis, AnalysisOptions, Analyzer, ChartSpace, Ground, Refinement, Stratification,
-    StratifyOptions, WaistProducer,
+    Analysis, AnalysisOptions, Analyzer, ChartSpace, Ground, StratifyOptions,
 };
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{
-    DimensionEstimator, Error, LocalChart, Mesh, MetricSpace, PointCloud, Triangulation,
-};
+use crosscap_core::{DimensionEstimator, Error, LocalChart, Mesh, MetricSpace, PointCloud};
 
 /// What a reconstruction is made of.
 pub(crate) struct Input<'i> {
@@ -35,27 +29,11 @@ pub(crate) struct Input<'i> {
 }
 
 /// A cloud ready for the stages, with what serves its metrics.
-struct Prepared<'g> {
-    rows: Rows,
+pub(super) struct Prepared<'g> {
+    pub(super) rows: Rows,
     boundary: Vec<usize>,
-    engines: Engines,
-    given: Option<Space<'g, f64>>,
-}
-
-/// A waist and what was made of it.
-struct Triangulated {
-    waist: Stratification<f64>,
-    triangulation: Triangulation,
-    /// Landmarks that were added.
-    added: usize,
-}
-
-/// A mesh and what is known of it.
-struct Judged {
-    mesh: Mesh,
-    homology: Homology,
-    pieces: Result<Pieces, PiecesError>,
-    certificate: Certificate,
+    pub(super) engines: Engines,
+    pub(super) given: Option<Space<'g, f64>>,
 }
 
 impl Pipeline {
@@ -91,10 +69,14 @@ impl Pipeline {
 
         progress.enter(Stage::Landmarks);
         let producer = stratifier.cut(&ground, &analysis)?;
-        let made = parts.triangulate(&prepared, producer.as_ref(), &watched, &mut progress)?;
-
-        let places = producer.places().unwrap_or(&prepared.rows.cloud);
-        let judged = parts.judge(&prepared, places, &made, &mut progress)?;
+        let making = Making {
+            parts,
+            prepared: &prepared,
+            producer: producer.as_ref(),
+            chart: &watched,
+            places: producer.places().unwrap_or(&prepared.rows.cloud),
+        };
+        let (made, judged) = making.mesh(&mut progress)?;
         // A star that stayed open in its own chart may be complete all the same; whether it is, the
         // certificate has seen edge by edge and link by link.
         let failures = match judged.certificate.verdict() {
@@ -247,73 +229,6 @@ impl Parts {
         }
     }
 
-    /// Triangulates a waist, and others with more landmarks where triangles stray from the points.
-    fn triangulate(
-        &self,
-        prepared: &Prepared<'_>,
-        producer: &dyn WaistProducer<f64>,
-        chart: &dyn LocalChart,
-        progress: &mut Progress<'_>,
-    ) -> Result<Triangulated, Error> {
-        let tuning = &self.tuning.refinement;
-        let mut extra: Vec<usize> = Vec::new();
-        let mut round = 0;
-        loop {
-            let waist = producer.waist(&extra)?;
-            waist.check(self.stratifier.name(), prepared.rows.cloud.len())?;
-            progress.enter(Stage::Triangulation);
-            let triangulation = self
-                .triangulated(&waist.waist, chart)
-                .map_err(|error| at_input_row(error, &waist.rows, &prepared.rows.kept))?;
-            // What cannot be triangulated is not mended by more landmarks.
-            let open = triangulation.incomplete.len() as f64;
-            let sound = open <= tuning.open_share * waist.rows.len() as f64;
-            let mut added = Vec::new();
-            if sound && round < tuning.rounds {
-                let refinement = Refinement {
-                    near: &prepared.engines.euclidean,
-                    producer,
-                    rows: &waist.rows,
-                    dl: self.parameters.dl,
-                    tuning,
-                };
-                added = refinement.rows_where_astray(&triangulation.complex);
-            }
-            if added.is_empty() {
-                return Ok(Triangulated {
-                    waist,
-                    triangulation,
-                    added: extra.len(),
-                });
-            }
-            extra.extend(added);
-            round += 1;
-            progress.enter(Stage::Landmarks);
-        }
-    }
-
-    /// The mesh of a triangulation, its homology and pieces, and the verdict.
-    fn judge(
-        &self,
-        prepared: &Prepared<'_>,
-        places: &PointCloud<f64>,
-        made: &Triangulated,
-        progress: &mut Progress<'_>,
-    ) -> Result<Judged, Error> {
-        progress.enter(Stage::Homology);
-        let complex = &made.triangulation.complex;
-        let mesh = mesh_of(complex, &made.waist, places, &prepared.rows.kept)?;
-        let homology = homology(&mesh.complex)?;
-        let pieces = pieces(&mesh);
-        progress.enter(Stage::Certificate);
-        Ok(Judged {
-            certificate: self.certify(prepared, &mesh, made),
-            mesh,
-            homology,
-            pieces,
-        })
-    }
-
     /// What the stages counted.
     fn report(&self, prepared: &Prepared<'_>, analysis: &Analysis, made: &Triangulated) -> Report {
         Report {
@@ -328,7 +243,7 @@ impl Parts {
             unexplained: analysis.unexplained().len(),
             models: analysis.models().to_vec(),
             landmarks: made.waist.counts,
-            added_landmarks: made.added,
+            added_landmarks: made.added.len(),
             triangulation: made.triangulation.counts,
             chart_distortion: Distortion::default(),
             graph: prepared.engines.graph().cloned(),
@@ -337,28 +252,6 @@ impl Parts {
             tuning: self.tuning.clone(),
             seconds: Vec::new(),
             parameters: self.parameters.clone(),
-        }
-    }
-
-    fn certify(&self, prepared: &Prepared<'_>, mesh: &Mesh, made: &Triangulated) -> Certificate {
-        let dropped: Vec<usize> = (made.triangulation.dropped.iter())
-            .map(|&k| made.waist.rows[k as usize])
-            .collect();
-        let special = special_points(mesh, &made.waist, &prepared.rows.kept);
-        let options = CertificateOptions {
-            points: Some(&prepared.engines.cloud),
-            landmark_separation: Some(self.parameters.dl),
-            unused_landmarks: &prepared.rows.in_input(&dropped),
-            special_points: &special,
-            closed: self.parameters.boundary.is_empty()
-                && !self.models.all().iter().any(|m| m.finds_boundary()),
-            faithful: self.parameters.spaces.metric != MetricName::Lifted,
-            limits: self.limits.clone(),
-            ..CertificateOptions::default()
-        };
-        match &prepared.given {
-            None => prepared.rows.named(certify(mesh, &options)),
-            Some(space) => certify_by_distances(mesh, space.metric(), space.oracle(), &options),
         }
     }
 }

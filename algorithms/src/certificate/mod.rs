@@ -133,6 +133,9 @@ pub struct CertificateOptions<'a> {
     pub points: Option<&'a PointCloud<f64>>,
     /// Landmark separation dl, unit of the data; 3/4 of the median edge when left out.
     pub landmark_separation: Option<f64>,
+    /// How many times that the separation at each input point is, where landmarks follow the spacing of the points;
+    /// once everywhere when left out. Distances between mesh and points are measured in the separation where they are.
+    pub separation_scale: Option<&'a [f64]>,
     /// Rows of the input that were selected as landmarks and are not in the mesh.
     pub unused_landmarks: &'a [usize],
     /// Strata of dimension 0: vertices whose link is declared.
@@ -157,6 +160,7 @@ impl Default for CertificateOptions<'_> {
         Self {
             points: None,
             landmark_separation: None,
+            separation_scale: None,
             unused_landmarks: &[],
             special_points: &[],
             admissible_links: &LinkKind::GENERIC,
@@ -214,6 +218,18 @@ impl CertificateOptions<'_> {
                     "vertices in dimension {}, points in dimension {}",
                     mesh.vertices.dimension(),
                     points.dimension()
+                ),
+            ));
+        }
+        let rows = self.points.map_or(0, PointCloud::len);
+        if let Some(scale) = self.separation_scale
+            && !(scale.len() == rows && scale.iter().all(|s| *s > 0.0 && s.is_finite()))
+        {
+            return Some(Violation::whole(
+                ViolationKind::Options,
+                format!(
+                    "a scale of the landmark separation of {} numbers, expected {rows} positive ones",
+                    scale.len()
                 ),
             ));
         }

@@ -203,6 +203,14 @@ pub struct RefinementTuning {
     pub rounds: usize,
     /// Share of landmarks whose star stayed open above which more landmarks are no remedy.
     pub open_share: f64,
+    /// A point farther than this from the mesh is left behind: at a right-angled edge, whose middle no landmark is
+    /// near, triangles pass half of a separation below.
+    pub behind: f64,
+    /// Nearest points of one that is left behind, half of which are at least half as far from the mesh: an outlier
+    /// has no such company.
+    pub company: usize,
+    /// Rounds of landmarks at points that are left behind.
+    pub mends: usize,
 }
 
 impl RefinementTuning {
@@ -214,5 +222,8 @@ impl RefinementTuning {
         growth: 1.5,
         rounds: 4,
         open_share: 0.01,
+        behind: 0.6,
+        company: 4,
+        mends: 3,
     };
 }
