@@ -36,7 +36,7 @@ while IFS='|' read -r name title sample reconstruct told; do
 
 ![$title](images/gallery/$name.png)
 
-$told. Betti numbers $betti.
+${told^}. Betti numbers $betti.
 
 \`\`\`sh
 crosscap sample $sample --seed 1 -o $name.npy

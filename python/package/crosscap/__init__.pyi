@@ -175,7 +175,7 @@ class Piece:
 
 class Place(NamedTuple):
     kind: str
-    index: int | tuple[int, int]
+    index: int | tuple[int, int]  # type: ignore[assignment]
 
 class Reason:
     kind: str

@@ -108,11 +108,11 @@ class Mesh:
 
     vertices: np.ndarray
     triangles: np.ndarray
-    curve_edges: np.ndarray = None
-    curve_cells: np.ndarray = None
-    point_index: np.ndarray = None
-    triangle_piece: np.ndarray = None
-    metadata: dict = None
+    curve_edges: np.ndarray | None = None
+    curve_cells: np.ndarray | None = None
+    point_index: np.ndarray | None = None
+    triangle_piece: np.ndarray | None = None
+    metadata: dict | None = None
 
     def __post_init__(self):
         def keep(name, kind, shape):
