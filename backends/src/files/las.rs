@@ -255,6 +255,7 @@ pub(crate) mod tests {
         let mut packer = LasZipCompressor::new(&mut out, how).unwrap();
         packer.compress_many(&plain[SHORTEST_HEADER..]).unwrap();
         packer.done().unwrap();
+        drop(packer);
         out.into_inner()
     }
 
