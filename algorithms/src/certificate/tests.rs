@@ -365,7 +365,7 @@ fn curves_without_surface() {
 #[test]
 fn a_segment_is_no_circle() {
     let circle = |places: [[f64; 3]; 3]| {
-        let mut draft = plane(4);
+        let mut draft = icosphere(2);
         let [a, b, c] = places.map(|p| draft.add(&p));
         draft
             .curves

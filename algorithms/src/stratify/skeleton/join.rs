@@ -5,8 +5,7 @@ use crosscap_core::{CurveEdge, Scalar};
 
 impl Skeleton {
     /// Joins ends of chains that stop at nothing, and landmarks of curves that no chain reached, nearest
-    /// pairs first: where the points of a curve have a gap. A curve does not turn back over one: each end is nearer to
-    /// the other than what comes before it is, else a segment of three landmarks would become a circle.
+    /// pairs first: where the points of a curve have a gap.
     pub(super) fn join_free_ends<S: Scalar>(&mut self, ground: &Ground<'_, '_, S>) {
         let mut degree = vec![0u32; self.rows.len()];
         for end in self.edges.iter().flat_map(|e| e.ends) {
@@ -22,8 +21,7 @@ impl Skeleton {
             for &b in &free[..x] {
                 let joined = self.edges.iter().any(|e| e.ends == [b as u32, a as u32]);
                 let d = ground.distance(self.rows[a], self.rows[b]);
-                let back = || self.turns_back(ground, a, b, d) || self.turns_back(ground, b, a, d);
-                if cells[a] == cells[b] && d <= reach && !joined && !back() {
+                if cells[a] == cells[b] && d <= reach && !joined {
                     pairs.push((d, b, a));
                 }
             }
@@ -37,18 +35,5 @@ impl Skeleton {
                 self.edges.push(edge);
             }
         }
-    }
-
-    /// Whether what comes before the end `a` is nearer to `b` than `a` itself, which is `away` from it.
-    fn turns_back<S: Scalar>(
-        &self,
-        ground: &Ground<'_, '_, S>,
-        a: usize,
-        b: usize,
-        away: f64,
-    ) -> bool {
-        let at_end = self.edges.iter().filter(|e| e.ends.contains(&(a as u32)));
-        let mut before = at_end.map(|e| e.ends[usize::from(e.ends[0] == a as u32)] as usize);
-        before.any(|x| x != b && ground.distance(self.rows[x], self.rows[b]) < away)
     }
 }
