@@ -45,6 +45,7 @@ impl fmt::Display for Distance {
     }
 }
 
+/// The largest distances both ways between a mesh and the surface its points were drawn from.
 pub fn distance(
     feature: &Feature,
     cloud: &FeatureCloud,
@@ -61,36 +62,42 @@ pub fn distance(
         let [a, b] = e.ends.map(row);
         [a, b, b]
     }));
-    let mut out = 0.0_f64;
-    for [a, b, c] in &faces {
-        let mean = |of: &[&Spot]| -> Spot {
-            std::array::from_fn(|k| of.iter().map(|p| p[k]).sum::<f64>() / of.len() as f64)
-        };
-        for place in [
-            *a,
-            *b,
-            *c,
-            mean(&[a, b]),
-            mean(&[b, c]),
-            mean(&[a, c]),
-            mean(&[a, b, c]),
-        ] {
-            let near = places.iter().map(|p| squared_distance(p, &place));
-            out = out.max(near.fold(f64::INFINITY, f64::min));
-        }
-    }
-    let mut back = 0.0_f64;
-    for p in &places {
+    let out = faces.iter().flat_map(samples).map(|place| {
+        let near = places.iter().map(|p| squared_distance(p, &place));
+        near.fold(f64::INFINITY, f64::min)
+    });
+    let back = places.iter().map(|p| {
         let near = faces.iter().map(|t| to_triangle(*p, *t));
-        back = back.max(near.fold(f64::INFINITY, f64::min));
-    }
+        near.fold(f64::INFINITY, f64::min)
+    });
+    let (out, back) = (out.fold(0.0, f64::max), back.fold(0.0, f64::max));
     let apart = EMPTY * cloud.spacing * (drawing.count as f64 / count as f64).sqrt();
     let usual = TOO_FAR + SCATTER * drawing.noise * cloud.spacing / dl;
+    // no method can tell better where a surface ends
+    let ends = mesh.complex.curve_edges.iter().any(|e| e.cells == 1);
+    let rim = if ends { RIM * cloud.thinnest / dl } else { 0.0 };
     Ok(Distance {
         out: out.sqrt() / dl,
         back: back.sqrt() / dl,
-        allowed: [usual.hypot(apart / dl), usual + RIM * cloud.thinnest / dl],
+        allowed: [usual.hypot(apart / dl) + rim, usual + rim],
     })
+}
+
+/// Corners, middles of the sides and the middle of a triangle.
+fn samples(corners: &[Spot; 3]) -> [Spot; 7] {
+    let [a, b, c] = *corners;
+    let mean = |of: &[Spot]| -> Spot {
+        std::array::from_fn(|k| of.iter().map(|p| p[k]).sum::<f64>() / of.len() as f64)
+    };
+    [
+        a,
+        b,
+        c,
+        mean(&[a, b]),
+        mean(&[b, c]),
+        mean(&[a, c]),
+        mean(corners),
+    ]
 }
 
 /// Squared distance of a place to a triangle: the nearest of its three sides, or its inside.

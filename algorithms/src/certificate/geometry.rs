@@ -22,6 +22,8 @@ pub struct GeometryReport {
     pub sharp_edges: usize,
     /// Ordinary edges with an angle below the limit.
     pub folds: usize,
+    /// Smallest angle between two edges of a curve without triangles, degrees; 180 is straight. None without such curves.
+    pub smallest_bend: Option<f64>,
     /// Pairs of triangles on top of each other.
     pub stacked_pairs: usize,
     /// Pairs of triangles that cross (dimension up to 3) or touch (above) outside common faces.
@@ -111,6 +113,9 @@ pub(super) fn check(
         .extend(Violation::at(ViolationKind::ZeroArea, flat, at));
 
     folds(mesh, incidence, limits, &mut report);
+    let (bend, folded) = super::bends::check(mesh, incidence, limits.bare_fold);
+    report.smallest_bend = bend;
+    report.violations.extend(folded);
 
     let dimension = mesh.vertices.dimension();
     let planes = Planes::new(mesh);

@@ -16,6 +16,7 @@
 //! Nothing here knows the true surface. What cannot be decided without it (the right Betti
 //! numbers, a handle too small for the landmarks) is not decided.
 
+mod bends;
 mod by_distances;
 mod cover;
 mod crossing;
@@ -65,6 +66,9 @@ pub struct Limits {
     pub shortest_boundary: usize,
     /// Least angle between the two triangles at an ordinary edge, degrees; flat is 180.
     pub fold: f64,
+    /// Least angle between two edges of a curve without triangles, at a vertex where nothing else is, degrees. Three landmarks of
+    /// a segment that are joined in a circle have angles near 0, those of a round circle 60.
+    pub bare_fold: f64,
     /// Least angle between two of the triangles at a curve edge, degrees. Sheets may cross
     /// at a small angle; below this they are the same.
     pub curve_fold: f64,
@@ -108,6 +112,7 @@ impl Default for Limits {
         Self {
             shortest_boundary: 6,
             fold: 20.0,
+            bare_fold: 45.0,
             curve_fold: 2.0,
             stacked_angle: 25.0,
             stacked_offset: 0.35,
@@ -178,6 +183,7 @@ impl CertificateOptions<'_> {
         let l = &self.limits;
         let named = [
             ("fold", l.fold),
+            ("bare_fold", l.bare_fold),
             ("curve_fold", l.curve_fold),
             ("stacked_angle", l.stacked_angle),
             ("stacked_offset", l.stacked_offset),

@@ -82,6 +82,8 @@ pub enum ViolationKind {
     ZeroArea,
     /// Two triangles folded onto each other over an ordinary edge.
     Fold,
+    /// Two edges of a curve without triangles lie on each other.
+    BareFold,
     /// Two of the triangles at a curve edge lie on each other.
     CurveFold,
     /// Two triangles without a common edge lie on top of each other.
@@ -125,9 +127,8 @@ impl ViolationKind {
                 Level::Edges
             }
             InadmissibleLink | SplitLink | Pinch | SpecialPoint => Level::Links,
-            ZeroArea | Fold | CurveFold | Stacked | SelfIntersection | NearCrossing | Entangled => {
-                Level::Geometry
-            }
+            ZeroArea | Fold | BareFold | CurveFold | Stacked | SelfIntersection | NearCrossing
+            | Entangled => Level::Geometry,
             UncoveredPoints | MeshFarFromPoints | MeshOffPoints | UnusedLandmarks => Level::Cover,
             BridgedGap | BareStretch | MergedSheets | VertexOffPoints => Level::Faithful,
             NeedleTriangle => Level::Quality,
@@ -158,6 +159,7 @@ impl ViolationKind {
             SpecialPoint => "declared special points with another link",
             ZeroArea => "triangles without area",
             Fold => "ordinary edges with a fold",
+            BareFold => "vertices where a curve turns back on itself",
             CurveFold => "curve edges with two triangles on each other",
             Stacked => "pairs of stacked triangles",
             SelfIntersection => "pairs of triangles that cross",
@@ -218,6 +220,7 @@ impl ViolationKind {
             ZeroArea | NeedleTriangle => {
                 "increase dl relative to the noise, or remove nearly repeated points"
             }
+            BareFold => "decrease dl: the curve has too few landmarks to show where it goes",
             Fold | CurveFold | Stacked => {
                 "decrease the triangulation radius or dl: a chart folds, or two sheets are closer \
                  than the landmarks can tell apart"

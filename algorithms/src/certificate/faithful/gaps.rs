@@ -11,6 +11,7 @@ impl Search<'_> {
         }
         let (tiles, middles) = self.far_tiles();
         let mut gaps: Vec<Gap> = self.widest(&tiles, &middles).into_iter().collect();
+        gaps.extend(self.overhang());
         self.chains(&tiles, &middles, &mut gaps);
         gaps.sort_by(|a, b| a.p.total_cmp(&b.p).then(b.expected.total_cmp(&a.expected)));
         let shown = gaps.iter().filter(|g| g.p < level).count().max(1);

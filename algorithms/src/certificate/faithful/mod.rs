@@ -14,6 +14,7 @@ pub(super) mod footprints;
 mod gaps;
 pub(super) mod ground;
 mod patch;
+mod rim;
 mod search;
 mod sheets;
 mod tiles;

@@ -16,7 +16,7 @@ const READ: usize = 4000;
 const NEIGHBORHOOD: f64 = 2.5;
 /// Part of an edge of the boundary up to which the mesh may end beyond its points: the height of the arc
 /// over a chord.
-const CHORD: f64 = 0.15;
+pub(super) const CHORD: f64 = 0.15;
 /// Ratio of the 90 to the 10 percent quantile of the local spacing above which the density varies: slits of less than
 /// two spacings are not looked for then, as an error of a tenth in the spacing makes them, and a thin place
 /// among dense ones is no gap.

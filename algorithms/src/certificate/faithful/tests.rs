@@ -124,6 +124,21 @@ fn a_bent_slit() {
     });
 }
 
+/// A mesh that leaves a slit open but closes its end by an edge across it: no disc is empty between that edge and the
+/// points, yet the edge itself is far from all of them.
+#[test]
+fn an_edge_across_the_end_of_a_slit() {
+    let empty = |x: f64, y: f64| x.abs() < 0.2 && y.abs() < 0.4;
+    let points = sample(5, POINTS, |x, y| if empty(x, y) { 0.0 } else { 1.0 });
+    let right = judged(&plate(empty), &points);
+    assert!(right.verdict().is_verified(), "{right}");
+    let wrong = judged(&plate(|x, y| empty(x, y) && y < 0.2), &points);
+    let kinds: Vec<ViolationKind> = wrong.violations().map(|v| v.kind).collect();
+    assert!(kinds.contains(&ViolationKind::BridgedGap), "{wrong}");
+    let gap = wrong.faithful.unwrap().largest_gap.unwrap();
+    assert!((gap.place[1] - 0.2).abs() < 0.01, "{gap:?}");
+}
+
 /// Random, dense in one corner and thin in the other, even: nothing is found. The guide says how often a
 /// finding is a false alarm; these are a watch on it.
 #[test]

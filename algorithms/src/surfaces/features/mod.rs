@@ -15,6 +15,9 @@ use crosscap_core::{Error, PointCloud};
 /// A place of R^3.
 pub type Spot = [f64; 3];
 
+/// A random place on a curve, where the feature has a size.
+type Walk = fn(&mut Random, f64) -> Spot;
+
 /// A surface with one feature of variable size.
 ///
 /// The functions take the size, in the unit of the surface, which measures about two across.
@@ -33,7 +36,7 @@ pub struct Feature {
     /// Places at which the feature is, enough to find the one with the thinnest points.
     spots: fn(f64) -> Vec<Spot>,
     /// A curve beside the surface: its length, and a random place on it.
-    curve: Option<(f64, fn(&mut Random, f64) -> Spot)>,
+    curve: Option<(f64, Walk)>,
 }
 
 /// How to draw a cloud. Same values, same points, on every platform.
