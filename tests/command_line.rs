@@ -1604,7 +1604,7 @@ fn a_comparison_that_makes_no_sense_is_refused() {
         ("odd.json -o odd.json", "would be overwritten"),
         (
             "p.npy -o t.csv --dl 0.2 --metrics euclidean,taxicab",
-            "euclidean, geodesic or lifted",
+            "euclidean, geodesic, conformal or lifted",
         ),
         ("p.npy -o t.csv --dl 0.2 --eps 2:1:3", "2 is not below 1"),
         (

@@ -40,7 +40,7 @@ impl Rounded {
         let coordinates = cloud.coordinates().iter();
         let largest = coordinates.fold(0.0_f64, |most, x| most.max(x.abs()));
         // Most clouds are told by this alone.
-        if coordinates_are_fine(cloud, largest) {
+        if is_near(cloud, largest) {
             return None;
         }
         let distinct = distinct_points(cloud);
@@ -55,18 +55,16 @@ impl Rounded {
     }
 }
 
-/// Whether some coordinate of the first rows has more digits than a 32-bit number as large as the largest one.
-fn coordinates_are_fine(cloud: &PointCloud<f64>, largest: f64) -> bool {
-    let step = largest / FAR / 4.0;
-    let column_is_fine = |axis: usize| {
-        let mut values = cloud.iter().take(ROWS).map(|row| row[axis] / step);
-        values.any(|x| (x - x.round()).abs() > 1e-3)
+/// Whether the points are so near to the origin, or so few, that steps of 32-bit numbers are less than their spacing:
+/// points of a surface of that extent are no nearer to each other than those of a line.
+fn is_near(cloud: &PointCloud<f64>, largest: f64) -> bool {
+    let extent = |axis: usize| {
+        let column = || cloud.iter().map(|row| row[axis]);
+        column().fold(f64::NEG_INFINITY, f64::max) - column().fold(f64::INFINITY, f64::min)
     };
-    largest == 0.0 || (0..cloud.dimension()).all(column_is_fine)
+    let longest = (0..cloud.dimension()).map(extent).fold(0.0, f64::max);
+    largest * cloud.len() as f64 <= FAR * longest
 }
-
-/// Rows whose digits are looked at first.
-const ROWS: usize = 100;
 
 impl fmt::Display for Rounded {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -110,7 +110,10 @@ pub fn write_cut_out(
 
 /// Whether a further search may help: not where the points themselves are no surface.
 pub fn may_be_helped(refusal: &Refusal) -> bool {
-    let hopeless = |kind| matches!(kind, FaultKind::Dimension | FaultKind::TwoReadings);
+    let hopeless = |kind| {
+        use FaultKind::{Dimension, Precision, TwoReadings, Unconfirmed};
+        matches!(kind, Dimension | TwoReadings | Unconfirmed | Precision)
+    };
     refusal
         .faults
         .first()
