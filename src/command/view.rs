@@ -10,7 +10,9 @@ use clap::Args;
 use crosscap_algorithms::certificate::{CertificateOptions, certify};
 use crosscap_algorithms::homology::homology;
 use crosscap_algorithms::pieces::pieces;
-use crosscap_backends::files::{AnyCloud, FileError, MeshFile, read_mesh, write_bytes_whole};
+use crosscap_backends::files::{
+    AnyCloud, FileError, MeshFile, NO_TRIANGLES, read_mesh, write_bytes_whole,
+};
 use crosscap_core::PointCloud;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -59,6 +61,15 @@ pub struct View {
     choice: PointArguments,
 }
 
+/// Whether a file cannot be a mesh at all: by its extension, or as an archive without triangles.
+fn holds_no_mesh(error: &FileError) -> bool {
+    match error {
+        FileError::Extension { .. } => true,
+        FileError::Content { found, .. } => found == NO_TRIANGLES,
+        _ => false,
+    }
+}
+
 /// What there is to see in a file.
 enum Seen {
     Mesh(Box<MeshFile>),
@@ -90,13 +101,10 @@ impl View {
             }
             other => other,
         };
-        match (self.choice.read(&self.mesh), mesh) {
-            (Ok(points), _) => Ok(Seen::Points(points.into_f64())),
-            // The file is none of points either: what is wrong with the mesh.
-            (Err(_), Err(error)) if !matches!(error, FileError::Extension { .. }) => {
-                Err(error.into())
-            }
-            (Err(error), _) => Err(error),
+        match mesh {
+            // A mesh that is broken is not shown as points.
+            Err(error) if !holds_no_mesh(&error) => Err(error.into()),
+            _ => Ok(Seen::Points(self.choice.read(&self.mesh)?.into_f64())),
         }
     }
 

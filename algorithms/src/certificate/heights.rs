@@ -20,7 +20,7 @@ use crosscap_core::{Mesh, PointCloud};
 /// let complex = Complex::new(3, vec![[0, 1, 2]], vec![]).unwrap();
 /// let mesh = Mesh::new(complex, corners, vec![-1; 3]).unwrap();
 /// // Above the triangle, and beside a corner.
-/// let points = PointCloud::new(3, vec![0.2, 0.2, 0.5, 4.0, 0.0, 4.0]).unwrap();
+/// let points = PointCloud::new(3, vec![0.25, 0.25, 0.5, 4.0, 0.0, 4.0]).unwrap();
 /// assert_eq!(distances_to_mesh(&mesh, &points), [0.5, 5.0]);
 /// ```
 pub fn distances_to_mesh(mesh: &Mesh, points: &PointCloud<f64>) -> Vec<f64> {

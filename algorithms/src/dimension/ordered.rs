@@ -76,15 +76,17 @@ impl Ordered {
     fn reach_from(&mut self, at: usize) -> f64 {
         let row = &self.distances[at * self.stride..][..self.away.len()];
         let mut least = [f64::INFINITY; LANES];
-        let away = self.away.chunks_exact_mut(LANES);
-        let rest = row.chunks_exact(LANES).zip(self.closed.chunks_exact(LANES));
-        for (away, (row, closed)) in away.zip(rest) {
-            for k in 0..LANES {
+        let away = self.away.as_chunks_mut::<LANES>().0;
+        let rest = row.as_chunks::<LANES>().0.iter();
+        let rest = rest.zip(self.closed.as_chunks::<LANES>().0);
+        for (away, (row, closed)) in away.iter_mut().zip(rest) {
+            let lanes = least.iter_mut().zip(away).zip(row.iter().zip(closed));
+            for ((least, away), (&row, &closed)) in lanes {
                 // Comparisons rather than `min` and `max`: one instruction for all lanes.
-                let near = if row[k] < away[k] { row[k] } else { away[k] };
-                away[k] = near;
-                let open = if closed[k] > near { closed[k] } else { near };
-                least[k] = if open < least[k] { open } else { least[k] };
+                let near = if row < *away { row } else { *away };
+                *away = near;
+                let open = if closed > near { closed } else { near };
+                *least = if open < *least { open } else { *least };
             }
         }
         least.into_iter().fold(f64::INFINITY, f64::min)
