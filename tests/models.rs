@@ -17,7 +17,7 @@ struct Case {
     links: &'static [(LinkKind, Option<usize>)],
 }
 
-const CASES: [Case; 6] = [
+const CASES: [Case; 7] = [
     Case {
         surface: "three_spheres",
         points: 60_000,
@@ -80,6 +80,15 @@ const CASES: [Case; 6] = [
         models: &[ModelName::Boundary],
         betti: [1, 1, 0],
         links: &[(LinkKind::Arc, None)],
+    },
+    Case {
+        surface: "cross_cap",
+        points: 10_000,
+        eps: 0.118,
+        dl: 0.047,
+        models: &[ModelName::TwoPlanes, ModelName::PinchPoint],
+        betti: [1, 0, 1],
+        links: &[(LinkKind::Pinch, Some(2)), (LinkKind::Double, None)],
     },
 ];
 

@@ -1,8 +1,8 @@
 //! Singularity models by name.
 
 use super::{
-    BareCurve, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, TriplePoint, TwoPlanes,
-    YJunction,
+    BareCurve, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, PinchPoint,
+    TriplePoint, TwoPlanes, YJunction,
 };
 use crosscap_core::{Error, SingularityModel};
 use serde::{Deserialize, Serialize};
@@ -38,6 +38,8 @@ pub enum ModelName {
     CurveThroughSheet,
     /// [`CurveOnSheet`].
     CurveOnSheet,
+    /// [`PinchPoint`].
+    PinchPoint,
 }
 
 /// Rounds of the refinement by equation (5).
@@ -45,7 +47,7 @@ const REFINEMENT_ROUNDS: usize = 20;
 
 impl ModelName {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::TwoPlanes,
         Self::RefinedTwoPlanes,
         Self::Boundary,
@@ -55,10 +57,11 @@ impl ModelName {
         Self::Curve,
         Self::CurveThroughSheet,
         Self::CurveOnSheet,
+        Self::PinchPoint,
     ];
 
     /// Those that compete where the user leaves the choice to the program.
-    pub const AUTO: [Self; 8] = [
+    pub const AUTO: [Self; 9] = [
         Self::TwoPlanes,
         Self::Boundary,
         Self::YJunction,
@@ -67,6 +70,7 @@ impl ModelName {
         Self::Curve,
         Self::CurveThroughSheet,
         Self::CurveOnSheet,
+        Self::PinchPoint,
     ];
 
     /// The name on the command line and in reports.
@@ -81,6 +85,7 @@ impl ModelName {
             Self::Curve => "curve",
             Self::CurveThroughSheet => "curve-through-sheet",
             Self::CurveOnSheet => "curve-on-sheet",
+            Self::PinchPoint => "pinch-point",
         }
     }
 
@@ -103,6 +108,7 @@ impl ModelName {
             Self::Curve => Box::new(BareCurve::new(dp, ep)?),
             Self::CurveThroughSheet => Box::new(CurveThroughSheet::new(dp, ep)?),
             Self::CurveOnSheet => Box::new(CurveOnSheet::new(dp, ep)?),
+            Self::PinchPoint => Box::new(PinchPoint::new(dp, ep)?),
         })
     }
 }

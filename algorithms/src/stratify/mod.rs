@@ -15,6 +15,7 @@
 mod analysis;
 mod atlas;
 mod cells;
+mod curve_ends;
 mod distances;
 mod landmarks;
 mod published;

@@ -13,7 +13,7 @@ impl Skeleton {
         }
         let cells = &self.cells;
         let free: Vec<usize> = (self.corners..self.rows.len())
-            .filter(|&k| degree[k] < 2)
+            .filter(|&k| degree[k] < 2 && cells[k] != 2)
             .collect();
         let reach = ground.tuning.join * ground.dl;
         let mut pairs = Vec::new();
