@@ -39,7 +39,7 @@ const SECTORS: usize = 8;
 const LEAST_SECTOR_SHARE: f64 = 0.25;
 /// How far the fold must be followed, in square roots of ep times the natural length of the map: there the
 /// sheet opens wide enough for charts of some four ep to be laid flat across it.
-const FOLD_LENGTH: f64 = 3.0;
+const FOLD_LENGTH: f64 = 2.5;
 /// How far at least, in ep: as far as a chart of three dl reaches, at some four ep each.
 const LEAST_FOLD: f64 = 14.0;
 /// Least natural length of the map in radii: a map of a shorter one is bent beyond its third order.
@@ -214,11 +214,9 @@ impl SingularityModel for PinchPoint {
         let center = fit.located(local.center);
         let located = rows.iter().map(|&row| Some(fit.located(row))).collect();
         let dimensions = [0, 1, 1, 1, 2, 2, 2, 2];
-        let [a, b, c, d] = [0, 1, 2, 3].map(|k| FIRST_CELL + k);
         let decomposition = Decomposition {
             strata: dimensions.map(|dimension| Stratum { dimension }).to_vec(),
             labels: (0..fit.all.len()).map(|row| fit.locate(row).0).collect(),
-            continuations: vec![(a, b), (c, d), (a, c), (b, d)],
             cells_at_curve: vec![4, 2, 2],
             residual: fit.residual,
             parameters: PinchMap::PARAMETERS,
