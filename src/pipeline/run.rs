@@ -7,7 +7,7 @@ use super::{Method, Outcome, Parameters, Parts, Pipeline, Report, Stage};
 use crate::spaces::{Engines, MetricName, Neighborhoods, custom, positions};
 use crate::watched::{Distortion, Watched};
 use crosscap_algorithms::certificate::{
-    Certificate, CertificateOptions, Verdict, certify, certify_by_distances,
+    Certificate, CertificateOptions, SpecialPoint, Verdict, certify, certify_by_distances,
 };
 use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::homology::{Homology, homology};
@@ -51,6 +51,7 @@ struct Triangulated {
 
 /// A mesh and what is known of it.
 struct Judged {
+    special_points: Vec<SpecialPoint>,
     mesh: Mesh,
     homology: Homology,
     pieces: Result<Pieces, PiecesError>,
@@ -124,6 +125,7 @@ impl Pipeline {
             homology: judged.homology,
             certificate: judged.certificate,
             pieces: judged.pieces,
+            special_points: judged.special_points,
             report: Report {
                 estimator,
                 points: input.cloud.len(),
@@ -334,8 +336,10 @@ impl Parts {
         let homology = homology(&mesh.complex)?;
         let pieces = pieces(&mesh);
         progress.enter(Stage::Certificate);
+        let special_points = special_points(&mesh, &made.waist, &ground.rows.kept);
         Ok(Judged {
-            certificate: self.certify(ground, &mesh, made),
+            certificate: self.certify(ground, &mesh, &special_points, made),
+            special_points,
             mesh,
             homology,
             pieces,
@@ -368,16 +372,21 @@ impl Parts {
         }
     }
 
-    fn certify(&self, ground: &Ground<'_>, mesh: &Mesh, made: &Triangulated) -> Certificate {
+    fn certify(
+        &self,
+        ground: &Ground<'_>,
+        mesh: &Mesh,
+        special_points: &[SpecialPoint],
+        made: &Triangulated,
+    ) -> Certificate {
         let dropped: Vec<usize> = (made.triangulation.dropped.iter())
             .map(|&k| made.waist.rows[k as usize])
             .collect();
-        let special = special_points(mesh, &made.waist, &ground.rows.kept);
         let options = CertificateOptions {
             points: Some(&ground.engines.cloud),
             landmark_separation: Some(self.parameters.dl),
             unused_landmarks: &ground.rows.in_input(&dropped),
-            special_points: &special,
+            special_points,
             closed: self.parameters.boundary.is_empty()
                 && !self.models.iter().any(|m| m.finds_boundary()),
             faithful: self.parameters.spaces.metric != MetricName::Lifted,

@@ -4,6 +4,7 @@ use super::crossing::Places;
 use super::distance::{separated, triangle_triangle};
 use super::frame::Frame;
 use super::incidence::Incidence;
+use super::pinched::{Pinched, parted};
 use super::stacked::Planes;
 use super::tree::{Bounds, Tree};
 use super::{Limits, Place, SpecialPoint, Violation, ViolationKind, exceeds};
@@ -198,114 +199,6 @@ pub(super) fn check(
         ));
     }
     report
-}
-
-/// The triangles near a pinch point by the cell they are in, as far as the folds reach that lead to it.
-///
-/// Two sheets meet in the double curve at an angle that goes to zero: their triangles are nearer to each other than
-/// stacked ones may be. Double curve and folds keep them apart.
-struct Pinched {
-    /// Triangles whose corners are all near the point, sorted, with the name of the cell.
-    cells: Vec<(u32, u32)>,
-}
-
-impl Pinched {
-    fn new(mesh: &Mesh, incidence: &Incidence, vertex: u32) -> Self {
-        let square = |v: u32| mesh.vertices.squared_distance(vertex as usize, v as usize);
-        let folds = fold_ends(mesh, vertex);
-        let reach = folds
-            .iter()
-            .map(|&v| square(v))
-            .fold(f64::INFINITY, f64::min);
-        let near = |v: u32| !folds.is_empty() && square(v) <= reach;
-        let all = &mesh.complex.triangles;
-        let inside: Vec<u32> = (0..all.len() as u32)
-            .filter(|&t| all[t as usize].iter().all(|&v| near(v)))
-            .collect();
-        let mut cells: Vec<(u32, u32)> = inside.iter().map(|&t| (t, u32::MAX)).collect();
-        for start in 0..cells.len() {
-            if cells[start].1 != u32::MAX {
-                continue;
-            }
-            cells[start].1 = start as u32;
-            let mut stack = vec![start];
-            while let Some(k) = stack.pop() {
-                let [a, b, c] = all[cells[k].0 as usize];
-                for edge in [[a, b], [a, c], [b, c]] {
-                    for &t in incidence.at_ordinary_edge(edge) {
-                        if let Ok(other) = inside.binary_search(&t)
-                            && cells[other].1 == u32::MAX
-                        {
-                            cells[other].1 = start as u32;
-                            stack.push(other);
-                        }
-                    }
-                }
-            }
-        }
-        Self { cells }
-    }
-
-    /// Whether both triangles are near the point and in different cells.
-    fn parts(&self, pair: [u32; 2]) -> bool {
-        let cell = |t: u32| {
-            let at = self.cells.binary_search_by_key(&t, |c| c.0).ok()?;
-            Some(self.cells[at].1)
-        };
-        matches!(pair.map(cell), [Some(a), Some(b)] if a != b)
-    }
-}
-
-/// Where the chains of two cells that start at a vertex end; none for a vertex that the mesh does not have.
-fn fold_ends(mesh: &Mesh, vertex: u32) -> Vec<u32> {
-    let folds: Vec<[u32; 2]> = (mesh.complex.curve_edges.iter())
-        .filter(|e| e.cells == 2)
-        .map(|e| e.ends)
-        .collect();
-    let next = |v: u32| {
-        let at = folds.iter().filter(move |e| e.contains(&v));
-        at.map(move |e| if e[0] == v { e[1] } else { e[0] })
-    };
-    let mut ends = Vec::new();
-    for start in next(vertex) {
-        let (mut before, mut here) = (vertex, start);
-        // A chain visits every edge at most once.
-        for _ in 0..folds.len() {
-            let Some(on) = next(here).find(|&v| v != before) else {
-                break;
-            };
-            (before, here) = (here, on);
-        }
-        ends.push(here);
-    }
-    ends
-}
-
-/// Whether curve edges lie between two triangles of a vertex on every way around it: they are of cells that
-/// meet there, at whatever angle, and what angle there may be is asked at the curve edges.
-fn parted(mesh: &Mesh, incidence: &Incidence, vertex: u32, pair: [u32; 2]) -> bool {
-    let around = incidence.at_vertex(vertex as usize);
-    let mut reached = vec![pair[0]];
-    let mut at = 0;
-    while at < reached.len() {
-        let own = mesh.complex.triangles[reached[at] as usize];
-        at += 1;
-        for &t in around
-            .iter()
-            .filter(|t| !reached.contains(t))
-            .collect::<Vec<_>>()
-        {
-            let other = mesh.complex.triangles[t as usize];
-            let through = own
-                .iter()
-                .find(|&&v| v != vertex && other.contains(&v))
-                .is_some_and(|&v| incidence.cells_at([vertex, v]).is_none());
-            if through {
-                reached.push(t);
-            }
-        }
-    }
-    !reached.contains(&pair[1])
 }
 
 /// Angles between the triangles at every edge.

@@ -28,6 +28,7 @@ mod geometry;
 mod incidence;
 mod indices;
 mod links;
+mod pinched;
 mod quality;
 mod stacked;
 mod tree;

@@ -1,9 +1,11 @@
 //! The map of a disc that pinches: what a cross-cap is near its end.
 
-use nalgebra::{DMatrix, DVector, Matrix3, SVector, SymmetricEigen, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen, Vector3};
 
 /// Number of terms: 1, v, u^2, u v, v^2, u^2 v, u v^2, v^3.
 const TERMS: usize = 8;
+/// Coordinates of their coefficients.
+const UNKNOWNS: usize = 3 * TERMS;
 /// Rounds of assigning parameters to the points and fitting the coefficients to them.
 const ROUNDS: usize = 12;
 /// Every so many rounds parameters are looked for from the start: a few points near the fold stay on the wrong
@@ -181,9 +183,8 @@ impl PinchMap {
     /// Coefficients fitted to points of given parameters. Distances along the sheet count little: parameters
     /// make up for them, and where they do not have to be kept the steps are those of Newton.
     fn improve(&mut self, points: &[Vector3<f64>], parameters: &[[f64; 2]]) -> Option<()> {
-        let unknowns = 3 * TERMS;
-        let mut normal = DMatrix::<f64>::zeros(unknowns, unknowns);
-        let mut right = DVector::<f64>::zeros(unknowns);
+        let mut normal = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
+        let mut right = SVector::<f64, UNKNOWNS>::zeros();
         for (x, &at) in points.iter().zip(parameters) {
             let [by_u, by_v] = self.tangents(at);
             let across = by_u.cross(&by_v);
@@ -209,7 +210,7 @@ impl PinchMap {
             }
         }
         let ridge = RIDGE * normal.trace();
-        for k in 0..unknowns {
+        for k in 0..UNKNOWNS {
             normal[(k, k)] += ridge;
         }
         // The factorization reads the lower triangle.
@@ -226,12 +227,13 @@ impl PinchMap {
         for round in 1..=ROUNDS {
             for (at, x) in parameters.iter_mut().zip(points) {
                 let [u, v] = *at;
-                let mut found = [u, -u, 0.5 * u]
-                    .map(|u| self.descend(x, [u, v], STEPS))
-                    .to_vec();
+                let mut found = [u, -u, 0.5 * u, u].map(|u| ([u, v], f64::INFINITY));
+                for (at, square) in &mut found[..3] {
+                    (*at, *square) = self.descend(x, *at, STEPS);
+                }
                 if round % AFRESH == 0 {
                     let anew = self.foot(x);
-                    found.push((anew, (self.at(anew) - x).norm_squared()));
+                    found[3] = (anew, (self.at(anew) - x).norm_squared());
                 }
                 *at = nearest(&found);
             }

@@ -1,6 +1,6 @@
 //! A double curve that ends inside a sheet.
 
-use super::patch::{PATCH_POINTS, QuadraticPatch};
+use super::patch::{PATCH_POINTS, off_one_sheet};
 use super::pinch_map::PinchMap;
 use super::tolerance::{Tolerance, at_least, vectors};
 use crosscap_core::{
@@ -76,64 +76,27 @@ impl PinchPoint {
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..local.fitted];
         let (map, square) = PinchMap::fit(points, local.radius).ok_or(Rejection::NoRealSolution)?;
-        let residual = self
-            .tolerance
-            .residual(square * points.len() as f64, points.len())?;
-        let mut sheet =
-            QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
-        sheet.fit(points.iter().copied(), local.radius);
-        let off = points.iter().map(|x| sheet.signed_distance(x).powi(2));
-        let simpler = (off.sum::<f64>() / points.len() as f64).sqrt();
+        let sum = square * points.len() as f64;
+        let residual = self.tolerance.residual(sum, points.len())?;
+        let simpler = off_one_sheet(points, local.radius);
         if residual > GAIN * simpler {
             return Err(Rejection::SimplerModelFits { residual, simpler });
         }
-        let center = all[local.center];
-        let shift = (map.point() - center).norm();
+        let shift = (map.point() - all[local.center]).norm();
         if shift > REACH * local.radius {
             return Err(Rejection::NoRealSolution);
         }
-        let parameters: Vec<[f64; 2]> = all.iter().map(|x| map.foot(x)).collect();
-        let limit = self.tolerance.ep;
-        let astray = (points.iter().zip(&parameters))
-            .filter(|(x, at)| (map.at(**at) - **x).norm() > limit)
-            .count();
-        if astray as f64 > MOST_ASTRAY * points.len() as f64 {
-            return Err(Rejection::PoorFit { residual, limit });
-        }
-        // What lies about the point, as far as the ball reaches to all sides of it.
-        let reach = local.radius - shift;
-        let mut held = [0usize; SECTORS];
-        for (x, &at) in points.iter().zip(&parameters) {
-            if (x - map.point()).norm() < reach {
-                let turn = map.angle(at) / TAU;
-                held[((turn + 1.0) * SECTORS as f64) as usize % SECTORS] += 1;
-            }
-        }
-        let total: usize = held.iter().sum();
-        let least = LEAST_SECTOR_SHARE * total as f64 / SECTORS as f64;
-        if let Some(sector) = held.iter().position(|&h| h as f64 <= least) {
-            return Err(Rejection::EmptyStratum {
-                stratum: sector,
-                found: held[sector],
-            });
-        }
-        let length = map.natural_length().ok_or(Rejection::NoRealSolution)?;
-        if length < LEAST_LENGTH * local.radius {
-            return Err(Rejection::NoRealSolution);
-        }
-        let needed = (FOLD_LENGTH * (limit * length).sqrt()).max(LEAST_FOLD * limit);
-        if reach < needed {
-            return Err(Rejection::NeighborhoodTooSmall {
-                needed: needed + shift,
-            });
-        }
-        Ok(Fit {
+        let fit = Fit {
+            parameters: all.iter().map(|x| map.foot(x)).collect(),
             map,
             all,
-            parameters,
             residual,
-            ep: limit,
-        })
+            ep: self.tolerance.ep,
+        };
+        fit.follows(local.fitted)?;
+        fit.surrounds(local.fitted, local.radius - shift)?;
+        fit.has_room(local.radius, shift)?;
+        Ok(fit)
     }
 }
 
@@ -147,6 +110,54 @@ struct Fit {
 }
 
 impl Fit {
+    /// Refuses a map that too many of the points are off.
+    fn follows(&self, fitted: usize) -> Result<(), Rejection> {
+        let all = self.all[..fitted].iter().zip(&self.parameters);
+        let astray = all.filter(|(x, at)| (self.map.at(**at) - **x).norm() > self.ep);
+        if astray.count() as f64 > MOST_ASTRAY * fitted as f64 {
+            return Err(Rejection::PoorFit {
+                residual: self.residual,
+                limit: self.ep,
+            });
+        }
+        Ok(())
+    }
+
+    /// Refuses a sheet that does not lie all around the point, as far as the ball reaches to all sides of it.
+    fn surrounds(&self, fitted: usize, reach: f64) -> Result<(), Rejection> {
+        let mut held = [0usize; SECTORS];
+        for (x, &at) in self.all[..fitted].iter().zip(&self.parameters) {
+            if (x - self.map.point()).norm() < reach {
+                let turn = self.map.angle(at) / TAU;
+                held[((turn + 1.0) * SECTORS as f64) as usize % SECTORS] += 1;
+            }
+        }
+        let total: usize = held.iter().sum();
+        let least = LEAST_SECTOR_SHARE * total as f64 / SECTORS as f64;
+        match held.iter().position(|&h| h as f64 <= least) {
+            Some(stratum) => Err(Rejection::EmptyStratum {
+                stratum,
+                found: held[stratum],
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses a ball in which the map is bent beyond its order, and one that shows too little of the fold. The
+    /// point is `shift` off the center.
+    fn has_room(&self, radius: f64, shift: f64) -> Result<(), Rejection> {
+        let length = (self.map.natural_length())
+            .filter(|&length| length >= LEAST_LENGTH * radius)
+            .ok_or(Rejection::NoRealSolution)?;
+        let needed = (FOLD_LENGTH * (self.ep * length).sqrt()).max(LEAST_FOLD * self.ep);
+        if radius - shift < needed {
+            return Err(Rejection::NeighborhoodTooSmall {
+                needed: needed + shift,
+            });
+        }
+        Ok(())
+    }
+
     /// Stratum of a row, and the nearest place on a curve.
     fn locate(&self, row: usize) -> (u8, Vector3<f64>, u8) {
         let x = self.all[row];
@@ -174,12 +185,15 @@ impl Fit {
             _ => 2,
         };
         let offset = (place - self.all[row]).norm();
-        let tells = dimension < 2 || offset < WITNESS_REACH * self.ep;
+        let (place, offset) = match dimension < 2 || offset < WITNESS_REACH * self.ep {
+            true => (place, offset),
+            false => (self.all[row], f64::INFINITY),
+        };
         Located {
             dimension,
             cells,
             place: place.iter().copied().collect(),
-            offset: if tells { offset } else { f64::INFINITY },
+            offset,
         }
     }
 }

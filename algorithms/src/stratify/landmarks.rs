@@ -20,7 +20,7 @@ pub(super) fn choose<S: Scalar>(
     seed: u64,
 ) -> Result<Vec<usize>, Error> {
     let candidates = free_of_edges(analyzer, strata, skeleton);
-    let innermost = curve_ends::innermost(strata, dl);
+    let innermost = curve_ends::innermost(strata, analyzer.tuning.ends.innermost * dl);
     let taken = &[skeleton.rows(), &innermost].concat();
     let oracle = analyzer.space.oracle();
     let chosen = selector.select(oracle, &candidates, taken, dl, seed)?;

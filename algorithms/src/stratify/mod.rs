@@ -31,7 +31,7 @@ pub use published::{Published, PublishedCut};
 pub use refine::Refinement;
 pub use site::{FitUsed, On, Site, StratumKind};
 pub use strata::Strata;
-pub use tuning::{AnalysisTuning, CellTuning, RefinementTuning, SkeletonTuning, Tuning};
+pub use tuning::{AnalysisTuning, CellTuning, EndTuning, RefinementTuning, SkeletonTuning, Tuning};
 pub use waist::{
     ChartSpace, Cut, PointStratum, Stratification, StratifyCounts, StratifyOptions, WaistProducer,
 };

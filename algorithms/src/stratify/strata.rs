@@ -7,7 +7,7 @@ use crate::balls::BallTree;
 use crosscap_core::{PointCloud, Scalar, squared_distance};
 
 /// Where every point is, with the places that points on curves are moved to. Made once from an
-/// [`Analysis`] and a resolution, and not changed after that.
+/// [`Analysis`] and a resolution; what is at the ends of curves is entered then, and nothing changes after that.
 #[derive(Clone, Debug)]
 pub struct Strata {
     sites: Vec<Site>,

@@ -1,19 +1,27 @@
 //! What a model says about the end of a curve.
 
-use super::fitter::{Fitter, Scratch};
+use super::fitter::{Fitter, Scratch, View};
 use crate::audit;
 use crate::stratify::curve_ends::{EndRegion, Settled};
 use crate::stratify::site::{FitUsed, On, StratumKind};
-use crosscap_core::{Located, Rejection, Scalar};
+use crosscap_core::{Decomposition, Located, Rejection, Scalar};
 
-/// Widest ball, in radii of the analysis.
-const WIDEST: f64 = 5.0;
-/// A ball whose center is farther than this share of its radius from the point that it shows is laid anew.
-const OFF_CENTER: f64 = 0.15;
-/// How often a ball is laid anew.
-const ATTEMPTS: usize = 5;
-/// A model that needs a wider ball gets one wider by this factor than it asks for.
-const SPARE: f64 = 1.08;
+/// A fit about an end.
+struct Shown {
+    fit: Decomposition,
+    /// What it says of the points of the ball.
+    located: Vec<Option<Located>>,
+    view: View,
+    /// The point in which the curve ends.
+    place: Box<[f64]>,
+}
+
+/// A ball in which a model is asked.
+#[derive(Clone, Copy)]
+struct Ball {
+    center: usize,
+    radius: f64,
+}
 
 impl<S: Scalar> Fitter<'_, S> {
     /// The region about the end of a curve at `row` by a model, and what becomes of its rows: first in the
@@ -27,70 +35,112 @@ impl<S: Scalar> Fitter<'_, S> {
         eps: f64,
         scratch: &mut Scratch<S>,
     ) -> Option<(EndRegion, Vec<Settled>)> {
-        let engine = self.models[model].as_ref();
-        let (mut center, mut radius) = (row, radius);
-        for _ in 0..ATTEMPTS {
-            if radius > WIDEST * eps {
+        let tuning = &self.tuning.ends;
+        let mut ball = Ball {
+            center: row,
+            radius,
+        };
+        for _ in 0..tuning.attempts {
+            if ball.radius > tuning.widest * eps {
                 return None;
             }
-            let view = self.view(center, radius, radius, scratch)?;
-            if view.frame.spreads_beyond(engine.local_dimension()) {
-                return None;
-            }
-            let rows: Vec<usize> = scratch.near.iter().map(|x| x.index).collect();
-            let all: Vec<usize> = (0..rows.len()).collect();
-            let local = self.local(&view, engine, scratch);
-            let (found, located) = match engine.decompose_about(&local, &all) {
-                Ok((fit, located)) => (Ok(fit), located),
+            let shown = match self.shown(model, ball, scratch)? {
+                Ok(shown) => shown,
                 Err(Rejection::NeighborhoodTooSmall { needed }) => {
-                    radius = SPARE * needed;
+                    ball.radius = tuning.spare * needed;
                     continue;
                 }
-                Err(rejection) => (Err(rejection), Vec::new()),
+                Err(_) => return None,
             };
-            let mut fit = audit::sound(found, &local, engine, center, &self.faults)?;
-            let lift = |to: &[f64], k: usize| self.moved(rows[k], &view, local.point(k), to);
-            let place = lift(fit.points.first()?, view.center);
-            let far = |r: usize| -> f64 {
-                let own = self.cloud.point(r).iter().map(|x| x.as_f64());
-                own.zip(&place).map(|(x, p)| (x - p) * (x - p)).sum()
-            };
-            let nearest = (rows.iter().copied())
-                .min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)))?;
-            let shift = far(center).sqrt();
-            if shift > OFF_CENTER * radius && nearest != center {
-                center = nearest;
+            let far = |row: usize| self.far(row, &shown.place);
+            let rows = scratch.near.iter().map(|x| x.index);
+            let nearest = rows.min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)))?;
+            let shift = far(ball.center);
+            if shift > tuning.off_center * ball.radius && nearest != ball.center {
+                ball.center = nearest;
                 continue;
             }
-            let reach = radius - shift;
             let used = FitUsed {
                 model: model as u8,
                 radius: eps,
             };
-            let mut own: Vec<(u32, u8, Settled)> = Vec::new();
-            for (k, located) in located.into_iter().enumerate() {
-                if far(rows[k]) < reach * reach {
-                    let located = located?;
-                    let place = lift(&located.place, k);
-                    let label = fit.labels[k];
-                    own.push((
-                        rows[k] as u32,
-                        label,
-                        settled(rows[k], located, place, used),
-                    ));
-                }
-            }
-            own.sort_by_key(|x| x.0);
-            fit.labels = Vec::new();
-            let region = EndRegion {
-                labels: own.iter().map(|x| (x.0, x.1)).collect(),
-                fit,
-                place: place.into(),
-                reach,
-            };
-            return Some((region, own.into_iter().map(|x| x.2).collect()));
+            return self.region(shown, ball.radius - shift, used, scratch);
         }
         None
+    }
+
+    /// What a model shows in a ball, or why it does not; `None` for a ball that it cannot be asked about.
+    fn shown(
+        &self,
+        model: usize,
+        ball: Ball,
+        scratch: &mut Scratch<S>,
+    ) -> Option<Result<Shown, Rejection>> {
+        let engine = self.models[model].as_ref();
+        let view = self.view(ball.center, ball.radius, ball.radius, scratch)?;
+        if view.frame.spreads_beyond(engine.local_dimension()) {
+            return None;
+        }
+        let all: Vec<usize> = (0..scratch.near.len()).collect();
+        let local = self.local(&view, engine, scratch);
+        let (fit, located) = match engine.decompose_about(&local, &all) {
+            Ok(found) => found,
+            Err(rejection) => return Some(Err(rejection)),
+        };
+        let fit = audit::sound(Ok(fit), &local, engine, ball.center, &self.faults)?;
+        let located = audit::placed(located, &all, &local, engine, ball.center, &self.faults);
+        let point = fit.points.first()?;
+        let place = self.moved(ball.center, &view, local.point(view.center), point);
+        Some(Ok(Shown {
+            fit,
+            located,
+            view,
+            place,
+        }))
+    }
+
+    /// The rows nearer than `reach` to the point that a fit shows, with what it says of them.
+    fn region(
+        &self,
+        shown: Shown,
+        reach: f64,
+        used: FitUsed,
+        scratch: &mut Scratch<S>,
+    ) -> Option<(EndRegion, Vec<Settled>)> {
+        let Shown {
+            mut fit,
+            located,
+            view,
+            place,
+        } = shown;
+        let rows: Vec<usize> = scratch.near.iter().map(|x| x.index).collect();
+        let engine = self.models[usize::from(used.model)].as_ref();
+        let local = self.local(&view, engine, scratch);
+        let labels = std::mem::take(&mut fit.labels);
+        let mut own: Vec<(u32, u8, Settled)> = Vec::new();
+        for (k, located) in located.into_iter().enumerate() {
+            let row = rows[k];
+            if self.far(row, &place) < reach {
+                let located = located?;
+                let to = self.moved(row, &view, local.point(k), &located.place);
+                own.push((row as u32, labels[k], settled(row, located, to, used)));
+            }
+        }
+        own.sort_by_key(|x| x.0);
+        let region = EndRegion {
+            labels: own.iter().map(|x| (x.0, x.1)).collect(),
+            fit,
+            place: place.into(),
+            reach,
+        };
+        Some((region, own.into_iter().map(|x| x.2).collect()))
+    }
+
+    /// How far a row is from a place.
+    fn far(&self, row: usize, place: &[f64]) -> f64 {
+        let own = self.cloud.point(row).iter().map(|x| x.as_f64());
+        let squares = own.zip(place).map(|(x, p)| (x - p) * (x - p));
+        squares.sum::<f64>().sqrt()
     }
 }
 

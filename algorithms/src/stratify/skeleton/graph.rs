@@ -99,7 +99,8 @@ impl CurveGraph {
         let rows = &self.nodes.rows;
         let first_corner = rows.len();
         let distance = |a: usize, b: usize| ground.distance(rows[a], rows[b]);
-        // A fold ends where the sheet is flat. What is next to a bare curve says where it ends, and its points are joined over as much anyway.
+        // A fold ends where the sheet is flat. What is next to a bare curve says where it ends, and its points
+        // are joined over as much anyway.
         let ends: Vec<Vec<usize>> = (self.parts.iter())
             .filter(|members| {
                 let stops =
