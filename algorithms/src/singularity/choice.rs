@@ -1,8 +1,8 @@
 //! Singularity models by name.
 
 use super::{
-    BareCurve, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, PinchPoint,
-    TriplePoint, TwoPlanes, YJunction,
+    BareCurve, Boundary, CrossingEnd, CurveOnSheet, CurveThroughSheet, IsolatedCrossing,
+    PinchPoint, TriplePoint, TwoPlanes, YJunction,
 };
 use crosscap_core::{Error, SingularityModel};
 use serde::{Deserialize, Serialize};
@@ -40,6 +40,8 @@ pub enum ModelName {
     CurveOnSheet,
     /// [`PinchPoint`].
     PinchPoint,
+    /// [`CrossingEnd`].
+    CrossingEnd,
 }
 
 /// Rounds of the refinement by equation (5).
@@ -47,7 +49,7 @@ const REFINEMENT_ROUNDS: usize = 20;
 
 impl ModelName {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::TwoPlanes,
         Self::RefinedTwoPlanes,
         Self::Boundary,
@@ -58,10 +60,11 @@ impl ModelName {
         Self::CurveThroughSheet,
         Self::CurveOnSheet,
         Self::PinchPoint,
+        Self::CrossingEnd,
     ];
 
     /// Those that compete where the user leaves the choice to the program.
-    pub const AUTO: [Self; 9] = [
+    pub const AUTO: [Self; 10] = [
         Self::TwoPlanes,
         Self::Boundary,
         Self::YJunction,
@@ -71,6 +74,7 @@ impl ModelName {
         Self::CurveThroughSheet,
         Self::CurveOnSheet,
         Self::PinchPoint,
+        Self::CrossingEnd,
     ];
 
     /// The name on the command line and in reports.
@@ -86,6 +90,7 @@ impl ModelName {
             Self::CurveThroughSheet => "curve-through-sheet",
             Self::CurveOnSheet => "curve-on-sheet",
             Self::PinchPoint => "pinch-point",
+            Self::CrossingEnd => "crossing-end",
         }
     }
 
@@ -109,6 +114,7 @@ impl ModelName {
             Self::CurveThroughSheet => Box::new(CurveThroughSheet::new(dp, ep)?),
             Self::CurveOnSheet => Box::new(CurveOnSheet::new(dp, ep)?),
             Self::PinchPoint => Box::new(PinchPoint::new(dp, ep)?),
+            Self::CrossingEnd => Box::new(CrossingEnd::new(dp, ep)?),
         })
     }
 }

@@ -2,6 +2,7 @@
 
 mod boundary;
 mod choice;
+mod crossing_end;
 mod curve;
 mod curve_and_sheet;
 mod curve_fit;
@@ -12,6 +13,7 @@ mod patch;
 mod pinch_map;
 mod pinch_point;
 mod regular;
+mod rim;
 mod sheet_in_four;
 mod sheets;
 mod tolerance;
@@ -21,6 +23,7 @@ mod vanishing;
 mod y_junction;
 pub use boundary::Boundary;
 pub use choice::ModelName;
+pub use crossing_end::CrossingEnd;
 pub use curve::BareCurve;
 pub use curve_and_sheet::{CurveOnSheet, CurveThroughSheet};
 pub use isolated_crossing::IsolatedCrossing;
