@@ -1,6 +1,7 @@
 //! Which distances a reconstruction is made with, and what serves them.
 
 use crosscap_algorithms::metric::{BruteForceOracle, CheckedMetric, Lifted, tangent_planes};
+use crosscap_algorithms::prepare::LocalSpacing;
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::ChartSpace;
 use crosscap_backends::euclidean::EuclideanOracle;
@@ -14,12 +15,17 @@ use std::str::FromStr;
 /// A metric on the points, by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum MetricName {
     /// Straight lines.
     #[default]
     Euclidean,
     /// Shortest paths through a graph of neighbors: see [`GeodesicMetric`].
     Geodesic,
+    /// Shortest paths again, every edge measured in the spacing of the points at its ends and given in the unit of
+    /// the data where the spacing is the usual one: see [`GeodesicMetric::conformal`]. For closed surfaces
+    /// whose points lie many times as densely here as there.
+    Conformal,
     /// Position and tangent plane together: see [`Lifted`]. As the metric of the analysis it takes
     /// crossing sheets apart, and what comes out is the surface before it was made to cross itself.
     Lifted,
@@ -27,7 +33,12 @@ pub enum MetricName {
 
 impl MetricName {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Euclidean, Self::Geodesic, Self::Lifted];
+    pub const ALL: [Self; 4] = [
+        Self::Euclidean,
+        Self::Geodesic,
+        Self::Conformal,
+        Self::Lifted,
+    ];
 }
 
 impl fmt::Display for MetricName {
@@ -35,6 +46,7 @@ impl fmt::Display for MetricName {
         f.write_str(match self {
             Self::Euclidean => "euclidean",
             Self::Geodesic => "geodesic",
+            Self::Conformal => "conformal",
             Self::Lifted => "lifted",
         })
     }
@@ -48,13 +60,14 @@ impl FromStr for MetricName {
         known.ok_or_else(|| Error::Parameter {
             name: "metric",
             value: name.into(),
-            expected: "euclidean, geodesic or lifted".into(),
+            expected: "euclidean, geodesic, conformal or lifted".into(),
         })
     }
 }
 
 /// How large the neighborhoods of the analysis are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Neighborhoods {
     /// Radius eps everywhere.
     #[default]
@@ -187,7 +200,8 @@ impl Spaces {
         Ok(())
     }
 
-    fn uses(&self, name: MetricName) -> bool {
+    /// Whether one of the metrics is this one.
+    pub fn uses(&self, name: MetricName) -> bool {
         self.metric == name || self.charts() == name
     }
 }
@@ -195,6 +209,7 @@ impl Spaces {
 /// What may be wrong with a result although nothing failed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Warning {
     /// About the graph of geodesic distances.
     Graph(GraphWarning),
@@ -229,6 +244,32 @@ impl fmt::Display for Warning {
 /// Points that a tangent plane is fitted to, for the lifted metric.
 const TANGENT_POINTS: usize = 32;
 
+/// Lengths measured in the spacing of the points.
+struct Conformal {
+    metric: GeodesicMetric<f64>,
+    /// How many times the usual spacing that at each point is.
+    scale: Vec<f64>,
+}
+
+impl Conformal {
+    fn new(
+        points: &EuclideanOracle<f64>,
+        rule: EdgeRule,
+        threads: &Threads,
+    ) -> Result<Self, Error> {
+        let spacing = LocalSpacing::by(points, threads)?;
+        let usual = spacing.median();
+        let scale: Vec<f64> = (spacing.values().iter())
+            .map(|s| (s / usual).max(LEAST_SCALE))
+            .collect();
+        let metric = threads.install(|| GeodesicMetric::conformal(points, rule, &scale))?;
+        Ok(Self { metric, scale })
+    }
+}
+
+/// Spacings below this share of the usual one are those of copies of a point, or nearly.
+const LEAST_SCALE: f64 = 1e-3;
+
 /// What serves the metrics of one reconstruction.
 pub(crate) struct Engines {
     /// The points as the analysis sees them: lifted for the lifted metric.
@@ -236,6 +277,7 @@ pub(crate) struct Engines {
     /// Straight lines between them.
     pub(crate) euclidean: EuclideanOracle<f64>,
     geodesic: Option<GeodesicMetric<f64>>,
+    conformal: Option<Conformal>,
     /// Straight lines in the other of the two: lifted for charts alone, or not lifted for charts.
     other: Option<EuclideanOracle<f64>>,
     spaces: Spaces,
@@ -267,10 +309,16 @@ impl Engines {
         } else {
             None
         };
+        let conformal = if spaces.uses(MetricName::Conformal) {
+            Some(Conformal::new(&euclidean, spaces.graph, threads)?)
+        } else {
+            None
+        };
         Ok(Self {
             cloud: (**euclidean.cloud()).clone(),
             euclidean,
             geodesic,
+            conformal,
             other,
             spaces: spaces.clone(),
         })
@@ -278,11 +326,14 @@ impl Engines {
 
     /// The space of the analysis.
     pub(crate) fn analysis(&self) -> Space<'_, f64> {
-        match &self.geodesic {
-            Some(geodesic) if self.spaces.metric == MetricName::Geodesic => {
-                Space::of(geodesic).with_places(&self.cloud)
-            }
-            _ => Space::of(&self.euclidean),
+        let paths = match self.spaces.metric {
+            MetricName::Geodesic => self.geodesic.as_ref(),
+            MetricName::Conformal => self.conformal.as_ref().map(|own| &own.metric),
+            MetricName::Euclidean | MetricName::Lifted => None,
+        };
+        match paths {
+            Some(paths) => Space::of(paths).with_places(&self.cloud),
+            None => Space::of(&self.euclidean),
         }
     }
 
@@ -290,8 +341,12 @@ impl Engines {
     pub(crate) fn charts(&self) -> ChartSpace<'_, f64> {
         let own = match (self.spaces.charts(), self.spaces.metric) {
             (MetricName::Geodesic, _) => self.geodesic.as_ref().map(Space::of),
+            (MetricName::Conformal, _) => self.conformal.as_ref().map(|own| Space::of(&own.metric)),
             (MetricName::Lifted, MetricName::Lifted) => None,
-            (MetricName::Euclidean, MetricName::Euclidean | MetricName::Geodesic) => None,
+            (
+                MetricName::Euclidean,
+                MetricName::Euclidean | MetricName::Geodesic | MetricName::Conformal,
+            ) => None,
             _ => self.other.as_ref().map(Space::of),
         };
         own.map_or(ChartSpace::Places, ChartSpace::Metric)
@@ -299,7 +354,14 @@ impl Engines {
 
     /// The graph of geodesic distances, where there is one.
     pub(crate) fn graph(&self) -> Option<&GraphReport> {
-        self.geodesic.as_ref().map(GeodesicMetric::report)
+        let conformal = self.conformal.as_ref().map(|own| &own.metric);
+        (self.geodesic.as_ref().or(conformal)).map(GeodesicMetric::report)
+    }
+
+    /// How many times the usual spacing that at each point is, where landmarks follow the spacing.
+    pub(crate) fn scale(&self) -> Option<&[f64]> {
+        let own = (self.conformal.as_ref()).filter(|_| self.spaces.metric == MetricName::Conformal);
+        own.map(|own| &own.scale[..])
     }
 
     /// What speaks against the distances.

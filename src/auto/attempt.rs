@@ -8,6 +8,7 @@ use std::fmt;
 
 /// One attempt at a reconstruction.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Attempt {
     /// The parameters.
     pub parameters: Parameters,
@@ -21,6 +22,7 @@ pub struct Attempt {
 
 /// What a mesh is up to bending, as far as homology and its pieces tell.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Topology {
     /// Betti numbers over Q.
     pub betti: [usize; 3],
@@ -47,6 +49,7 @@ const FEW_PLACES: usize = 3;
 /// How an attempt ended.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum End {
     /// With a verified mesh.
     Verified(Topology),

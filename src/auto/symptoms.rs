@@ -20,6 +20,10 @@ pub(super) enum Symptom {
     Ends,
     /// Stars stay open.
     Open,
+    /// The mesh covers gaps of the points.
+    Gaps,
+    /// Two sheets of points are one in the mesh.
+    Merged,
     /// Mesh and points are not near each other.
     Cover,
 }
@@ -50,7 +54,12 @@ impl Symptom {
             Self::Open
         } else if found(&|v| v.kind.level() == Level::Edges) {
             Self::Ends
+        } else if found(&|v| v.kind == ViolationKind::BridgedGap) {
+            Self::Gaps
+        } else if found(&|v| v.kind == ViolationKind::MergedSheets) {
+            Self::Merged
         } else {
+            // Vertices off their points are badly placed landmarks, too.
             Self::Cover
         }
     }
@@ -59,12 +68,25 @@ impl Symptom {
     pub(super) fn moves(self) -> &'static [Move] {
         use Move::*;
         match self {
-            Self::Sparse => &[Larger, Local, Closed, Ending],
-            Self::Unexplained => &[Closed, Ending, Smaller, Local],
-            Self::Curves => &[Closed, Ending, Smaller, Local, Finer, Unfolded],
-            Self::Folds | Self::Open => &[Unfolded, Closed, Smaller, Ending, Local, Finer],
-            Self::Ends => &[Ending, Closed, Smaller, Unfolded],
-            Self::Cover => &[OtherLandmarks, Smaller, Closed, Ending, Unfolded, Local],
+            Self::Sparse => &[Spaced, Larger, Local, Closed, Ending],
+            Self::Unexplained => &[Spaced, Closed, Ending, Smaller, Local],
+            Self::Curves => &[Spaced, Closed, Ending, Smaller, Local, Finer, Unfolded],
+            Self::Folds | Self::Open => &[Spaced, Unfolded, Closed, Smaller, Ending, Local, Finer],
+            Self::Ends => &[Ending, Spaced, Closed, Smaller, Unfolded],
+            // A gap stays open where landmarks are nearer to each other than it is wide, if the mesh may end there.
+            Self::Gaps => &[Finer, Ending, Spaced, Smaller],
+            // Paths along the surface do not lead from one sheet to the other.
+            Self::Merged => &[Closed, Ending, Finer, Unfolded, Smaller],
+            Self::Cover => &[
+                Spaced,
+                OtherLandmarks,
+                Closed,
+                Finer,
+                Smaller,
+                Ending,
+                Unfolded,
+                Local,
+            ],
         }
     }
 }

@@ -13,6 +13,7 @@ use serde::Serialize;
 
 /// Folds, overlaps and crossings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct GeometryReport {
     /// Triangles without area.
     pub zero_area: usize,

@@ -22,6 +22,7 @@ pub struct SpecialPoint {
 
 /// Vertices by the kind of their link.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LinkReport {
     /// Number of vertices of each kind of link; vertices without any edge are left out.
     pub census: BTreeMap<LinkKind, usize>,

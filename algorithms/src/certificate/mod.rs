@@ -25,6 +25,7 @@ mod edges;
 mod faithful;
 mod frame;
 mod geometry;
+mod heights;
 mod incidence;
 mod indices;
 mod links;
@@ -41,8 +42,9 @@ pub use by_distances::{DistanceReport, certify_by_distances};
 pub use cover::{CoverReport, Distances};
 pub use crosscap_core::{Link, LinkKind};
 pub use edges::EdgeReport;
-pub use faithful::{FaithfulReport, Gap, Merged, Offset};
+pub use faithful::{FaithfulReport, Gap, Merged, Offset, Stretch};
 pub use geometry::GeometryReport;
+pub use heights::distances_to_mesh;
 pub use indices::IndexReport;
 pub use links::{LinkReport, SpecialPoint};
 pub use quality::{Cell, QualityReport, Spread};
@@ -132,6 +134,9 @@ pub struct CertificateOptions<'a> {
     pub points: Option<&'a PointCloud<f64>>,
     /// Landmark separation dl, unit of the data; 3/4 of the median edge when left out.
     pub landmark_separation: Option<f64>,
+    /// How many times that the separation at each input point is, where landmarks follow the spacing of the points;
+    /// once everywhere when left out. Distances between mesh and points are measured in the separation where they are.
+    pub separation_scale: Option<&'a [f64]>,
     /// Rows of the input that were selected as landmarks and are not in the mesh.
     pub unused_landmarks: &'a [usize],
     /// Strata of dimension 0: vertices whose link is declared.
@@ -156,6 +161,7 @@ impl Default for CertificateOptions<'_> {
         Self {
             points: None,
             landmark_separation: None,
+            separation_scale: None,
             unused_landmarks: &[],
             special_points: &[],
             admissible_links: &LinkKind::GENERIC,
@@ -216,6 +222,18 @@ impl CertificateOptions<'_> {
                 ),
             ));
         }
+        let rows = self.points.map_or(0, PointCloud::len);
+        if let Some(scale) = self.separation_scale
+            && !(scale.len() == rows && scale.iter().all(|s| *s > 0.0 && s.is_finite()))
+        {
+            return Some(Violation::whole(
+                ViolationKind::Options,
+                format!(
+                    "a scale of the landmark separation of {} numbers, expected {rows} positive ones",
+                    scale.len()
+                ),
+            ));
+        }
         if self.points.is_some_and(|p| u32::try_from(p.len()).is_err()) {
             return Some(Violation::whole(
                 ViolationKind::Options,
@@ -229,6 +247,7 @@ impl CertificateOptions<'_> {
 /// The reports of all levels. A level that could not be asked, because an earlier one found
 /// the arrays unusable, is missing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Certificate {
     /// Whether the arrays are those of a simplicial complex with distinct places.
     pub indices: IndexReport,

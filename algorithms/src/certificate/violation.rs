@@ -103,6 +103,9 @@ pub enum ViolationKind {
     /// An empty region of the points that the mesh covers, and that chance does not explain: a hole, a slit
     /// or a cut.
     BridgedGap,
+    /// A stretch of a curve without points that chance does not explain: there are two curves, or the curve ends before
+    /// what the mesh joins it to.
+    BareStretch,
     /// Two sheets of points, one over the other, that the mesh takes for one.
     MergedSheets,
     /// Vertices off the points of a sheet at them.
@@ -126,7 +129,7 @@ impl ViolationKind {
                 Level::Geometry
             }
             UncoveredPoints | MeshFarFromPoints | MeshOffPoints | UnusedLandmarks => Level::Cover,
-            BridgedGap | MergedSheets | VertexOffPoints => Level::Faithful,
+            BridgedGap | BareStretch | MergedSheets | VertexOffPoints => Level::Faithful,
             NeedleTriangle => Level::Quality,
         }
     }
@@ -165,6 +168,7 @@ impl ViolationKind {
             MeshOffPoints => "triangles off the input points next to them",
             UnusedLandmarks => "landmarks not in the mesh",
             BridgedGap => "gaps of the points that the mesh covers",
+            BareStretch => "edges of curves where the points leave a gap",
             MergedSheets => "vertices where two sheets of points are one in the mesh",
             VertexOffPoints => "vertices off the points around them",
             NeedleTriangle => "triangles with an angle of nearly zero",
@@ -234,6 +238,9 @@ impl ViolationKind {
                 "decrease the triangulation radius or dl: triangles bridge empty space"
             }
             BridgedGap => "decrease dl, so that the mesh leaves the gap open",
+            BareStretch => {
+                "decrease dl and eps, so that the mesh leaves the gap open; or give more points of the curve"
+            }
             MergedSheets => "decrease dl and eps below the distance of the sheets",
             VertexOffPoints => "decrease dl or eps: the sheets bend within a neighborhood",
             UnusedLandmarks => "increase the triangulation radius, or decrease the noise",
@@ -277,6 +284,7 @@ impl fmt::Display for Place {
 
 /// One kind of violation with all its places.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Violation {
     /// What is wrong.
     pub kind: ViolationKind,
@@ -350,6 +358,20 @@ impl Violation {
     }
 }
 
+/// A number as it is printed: probabilities are too small for decimals.
+struct Figure(f64);
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = *self;
+        if value != 0.0 && value.abs() < 0.01 {
+            write!(f, "{value:.1e}")
+        } else {
+            write!(f, "{value:.4}")
+        }
+    }
+}
+
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.count, self.kind.meaning())?;
@@ -357,7 +379,12 @@ impl fmt::Display for Violation {
             write!(f, " ({})", self.detail)?;
         }
         if let (Some(worst), Some(limit)) = (self.worst, self.limit) {
-            write!(f, ", worst {worst:.4} against a limit of {limit:.4}")?;
+            write!(
+                f,
+                ", worst {} against a limit of {}",
+                Figure(worst),
+                Figure(limit)
+            )?;
         }
         if let Some(first) = self.places.first() {
             write!(f, "; first at {first}")?;

@@ -213,8 +213,8 @@ fn equal_points_alone() {
         for found in dimensions(&cloud, 1e-9, 0.05, &Serial).unwrap() {
             assert_eq!(
                 found,
-                LocalDimension {
-                    count: 500,
+                BallDimension {
+                    neighbors: 500,
                     dimension: 0
                 }
             );

@@ -39,6 +39,7 @@ mod points;
 mod remark;
 mod stl;
 mod table;
+mod trajectory;
 mod vtk;
 mod vtk_xml;
 mod vtu;

@@ -157,7 +157,7 @@ class Mesh:
             return isomap(self).places
         return np.pad(self.vertices, ((0, 0), (0, 3 - dimension)))
 
-    def page(self, title="mesh", verdict=None):
+    def page(self, title="mesh", verdict=None, points=None):
         """The page on which the mesh is turned: one HTML file.
 
         Parameters
@@ -166,6 +166,8 @@ class Mesh:
             Heading.
         verdict : str, optional
             What the page says about the mesh.
+        points : array-like of shape (n_points, n_dimensions), optional
+            The points that it was made from, to be shown with it and colored by their distance to it.
 
         Returns
         -------
@@ -174,7 +176,9 @@ class Mesh:
         if verdict is None:
             verified = (self.metadata or {}).get("verified")
             verdict = {True: "verified", False: "not verified"}.get(verified, "not checked")
-        return _crosscap.page(self._arrays(), title, verdict)
+        if points is not None:
+            points = np.ascontiguousarray(points, dtype=np.float64)
+        return _crosscap.page(self._arrays(), title, verdict, points)
 
     def _repr_html_(self):
         return _bridges.framed(self.page()) if len(self.triangles) else None
@@ -207,6 +211,13 @@ def homology(mesh):
     Returns
     -------
     Homology
+
+    Examples
+    --------
+    >>> import crosscap
+    >>> square = crosscap.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> crosscap.homology(square)
+    Homology(betti=(1, 0, 0), betti_mod2=(1, 0, 0), torsion=(), euler=1)
     """
     return _homology(json.loads(_crosscap.homology(mesh._arrays())))
 
@@ -264,6 +275,13 @@ def isomap(mesh, dimension=3, *, landmarks=300):
     Returns
     -------
     Embedding
+
+    Examples
+    --------
+    >>> import crosscap
+    >>> square = crosscap.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> crosscap.isomap(square, 2).places.shape
+    (4, 2)
     """
     return Embedding(**_crosscap.isomap(mesh._arrays(), dimension, landmarks))
 
@@ -274,11 +292,24 @@ def read_mesh(path):
     Parameters
     ----------
     path : str or path-like
-        The file: ``.npz`` keeps everything; ``.vtu``, ``.ply``, ``.obj``, ``.off``.
+        The file: ``.npz`` keeps everything; ``.vtu``, ``.ply``, ``.obj``, ``.off``, ``.stl``.
 
     Returns
     -------
     Mesh
+
+    Raises
+    ------
+    ValueError
+        With the file, the place, what was found and what was expected.
+
+    Examples
+    --------
+    >>> import crosscap, tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "triangle.off")
+    >>> _ = path.write_text("OFF\\n3 1 0\\n0 0 0\\n1 0 0\\n0 1 0\\n3 0 1 2\\n")
+    >>> crosscap.read_mesh(path)
+    <mesh: 3 vertices in R^3, 1 triangles>
     """
     told = _crosscap.read_mesh(fspath(path))
     told["metadata"] = json.loads(told["metadata"])
@@ -291,9 +322,17 @@ def write_mesh(path, mesh):
     Parameters
     ----------
     path : str or path-like
-        The file: ``.npz`` keeps everything; ``.vtu``, ``.ply``, ``.obj``, ``.off``.
+        The file: ``.npz`` keeps everything; ``.vtu``, ``.ply``, ``.obj``, ``.off``, ``.stl``, ``.glb``.
     mesh : Mesh
         The mesh.
+
+    Examples
+    --------
+    >>> import crosscap, tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "triangle.ply")
+    >>> crosscap.write_mesh(path, crosscap.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+    >>> len(crosscap.read_mesh(path).triangles)
+    1
     """
     pieces = mesh.triangle_piece
     _crosscap.write_mesh(

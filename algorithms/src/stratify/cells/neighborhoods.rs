@@ -10,10 +10,10 @@ use crate::execute;
 use crate::space::Space;
 use crate::stratify::analysis::Analyzer;
 use crate::stratify::atlas::Reference;
+use crate::stratify::charts::ChartSpace;
 use crate::stratify::curve_ends::Wards;
 use crate::stratify::skeleton::Skeleton;
 use crate::stratify::strata::Strata;
-use crate::stratify::waist::ChartSpace;
 use crosscap_core::{
     CellNeighborhood, Error, Neighbor, NeighborhoodOracle, PointCloud, Scalar, squared_distance,
 };
@@ -141,7 +141,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
             on_curves.extend_from_slice(places.point(fit.row));
         }
         let gap = tuning.curve_gap * self.dl;
-        let around = Surroundings::new(width, landmarks, &on_curves, gap, self.dl);
+        let around = Surroundings::new(width, landmarks, &on_curves, gap, tuning.flat * self.dl);
         let find = |scratch: &mut plain::Scratch, j: usize| {
             if jobs[j].group.is_some() {
                 return None;

@@ -3,7 +3,7 @@
 use super::{Answer, EndRegion};
 use crate::stratify::site::{On, StratumKind};
 use crate::stratify::strata::Strata;
-use crate::stratify::tuning::EndTuning;
+use crate::tuning::EndTuning;
 use crosscap_core::{PointCloud, Scalar, squared_distance};
 
 /// Puts the rows of a region where the model says that they are.

@@ -75,6 +75,3 @@ pub(super) fn explain<S: Scalar>(
     }
     fitter.faults.none()
 }
-
-#[cfg(test)]
-mod tests;

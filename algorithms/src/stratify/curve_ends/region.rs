@@ -109,3 +109,64 @@ pub(in crate::stratify) fn innermost(strata: &Strata, within: f64) -> Vec<usize>
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crosscap_core::Stratum;
+
+    /// A region about a place on a line of points one tenth apart.
+    fn answer(cloud: &PointCloud<f64>, at: f64, reach: f64) -> Answer {
+        let fit = Decomposition {
+            strata: vec![Stratum { dimension: 2 }],
+            labels: Vec::new(),
+            cells_at_curve: Vec::new(),
+            residual: 0.0,
+            parameters: 0,
+            points: vec![vec![at]],
+            center: vec![at],
+            center_offset: 0.0,
+        };
+        let mut region = EndRegion {
+            labels: Vec::new(),
+            fit,
+            place: vec![at],
+            reach,
+        };
+        let rows: Vec<usize> = (0..cloud.len())
+            .filter(|&r| region.far(cloud, r) < reach)
+            .collect();
+        region.labels = rows.iter().map(|&r| (r as u32, 0)).collect();
+        let settled = |&row: &usize| Settled {
+            row,
+            on: None,
+            beside: None,
+        };
+        Answer {
+            settled: rows.iter().map(settled).collect(),
+            region,
+            eps: reach,
+        }
+    }
+
+    #[test]
+    fn no_row_is_in_two_regions() {
+        let cloud = PointCloud::new(1, (0..31).map(|k| f64::from(k) / 10.0).collect()).unwrap();
+        let all = [(0.51, 0.7), (1.53, 0.7), (2.8, 0.4)];
+        let mut answers = all.map(|(at, reach)| answer(&cloud, at, reach));
+        part(&cloud, &mut answers);
+        let reaches = answers.each_ref().map(|a| a.region.reach);
+        // The first two meet half way; the third is clear of both.
+        for (found, expected) in reaches.iter().zip([0.51, 0.51, 0.4]) {
+            assert!((found - expected).abs() < 1e-12, "{reaches:?}");
+        }
+        for row in 0..cloud.len() {
+            let holding = answers.iter().filter(|a| a.region.label(row).is_some());
+            assert!(holding.count() <= 1, "{row}");
+        }
+        for a in &answers {
+            assert_eq!(a.settled.len(), a.region.labels.len());
+            assert!(!a.settled.is_empty());
+        }
+    }
+}

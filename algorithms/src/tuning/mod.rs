@@ -4,6 +4,15 @@
 //! separation dl), so that none of them knows the unit of the data. What was measured is in the guide, chapter
 //! on decisions; what is not said there to be measured was chosen once and never varied.
 
+mod front;
+mod models;
+
+pub use front::FrontTuning;
+pub use models::{
+    BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,
+    TwoPlanesTuning, YJunctionTuning,
+};
+
 use serde::Serialize;
 
 /// All of them. [`Tuning::MEASURED`] is what the program runs with.
@@ -17,8 +26,12 @@ pub struct Tuning {
     pub skeleton: SkeletonTuning,
     /// Cells and the neighborhoods in them.
     pub cells: CellTuning,
+    /// Stars that cannot be closed.
+    pub front: FrontTuning,
     /// Landmarks added where triangles stray from the points.
     pub refinement: RefinementTuning,
+    /// When the program's own models believe a fit.
+    pub models: ModelTuning,
 }
 
 impl Tuning {
@@ -28,7 +41,9 @@ impl Tuning {
         ends: EndTuning::MEASURED,
         skeleton: SkeletonTuning::MEASURED,
         cells: CellTuning::MEASURED,
+        front: FrontTuning::MEASURED,
         refinement: RefinementTuning::MEASURED,
+        models: ModelTuning::MEASURED,
     };
 }
 
@@ -188,6 +203,9 @@ pub struct CellTuning {
     pub contact_reach: f64,
     /// Every point of a curve has a landmark or a labelling fit within this.
     pub curve_gap: f64,
+    /// Landmarks are on one sheet where a quadratic height follows them this closely: sheets that
+    /// are nearer to each other than that share no landmarks' spacing could tell apart.
+    pub flat: f64,
     /// Fewest members of a neighborhood. Where landmarks are sparse a chart of the usual radius misses
     /// triangles that it has to keep clear of: charts with fewer members are widened.
     pub least_members: usize,
@@ -204,6 +222,7 @@ impl CellTuning {
         contacts: 6,
         contact_reach: 2.0,
         curve_gap: 0.7,
+        flat: 0.1,
         least_members: 14,
         widening: 1.25,
         widenings: 2,
@@ -225,6 +244,14 @@ pub struct RefinementTuning {
     pub rounds: usize,
     /// Share of landmarks whose star stayed open above which more landmarks are no remedy.
     pub open_share: f64,
+    /// A point farther than this from the mesh is left behind: at a right-angled edge, whose middle no landmark is
+    /// near, triangles pass half of a separation below.
+    pub behind: f64,
+    /// Nearest points of one that is left behind, half of which are at least half as far from the mesh: an outlier
+    /// has no such company.
+    pub company: usize,
+    /// Rounds of landmarks at points that are left behind.
+    pub mends: usize,
 }
 
 impl RefinementTuning {
@@ -236,5 +263,8 @@ impl RefinementTuning {
         growth: 1.5,
         rounds: 4,
         open_share: 0.01,
+        behind: 0.6,
+        company: 4,
+        mends: 3,
     };
 }
