@@ -7,7 +7,7 @@ use super::output;
 use super::points::PointArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
-use crosscap_algorithms::certificate::{CertificateOptions, certify};
+use crosscap_algorithms::certificate::{CertificateOptions, SpecialPoint, certify};
 use crosscap_algorithms::homology::{LocalHomology, homology, local_homology};
 use crosscap_algorithms::pieces::{Pieces, pieces};
 use crosscap_backends::euclidean::EuclideanOracle;
@@ -86,7 +86,9 @@ impl Check {
         let points = self.cloud(mesh)?;
         let progress = Progress::new("checking");
         let known = file.extras.metadata.get("dl").and_then(Value::as_f64);
+        let special_points = self.declared(&file.extras.metadata)?;
         let options = CertificateOptions {
+            special_points: &special_points,
             points: points.as_ref(),
             landmark_separation: self.dl.or(known.filter(|&dl| dl > 0.0)),
             closed: self.closed,
@@ -167,6 +169,19 @@ impl Check {
             "{}: not verified{why}",
             self.mesh.display()
         )))
+    }
+
+    /// The points that the mesh declares, as it declares which edges are on curves.
+    fn declared(&self, metadata: &Value) -> Result<Vec<SpecialPoint>, Failure> {
+        let Some(all) = metadata.get("special_points") else {
+            return Ok(Vec::new());
+        };
+        serde_json::from_value(all.clone()).map_err(|error| {
+            Failure::usage(format!(
+                "{}: its special points, vertices with the link that each must have, cannot be read: {error}",
+                self.mesh.display()
+            ))
+        })
     }
 
     fn local_check(&self, mesh: &Mesh, metadata: &Value) -> Result<LocalHomology, Failure> {

@@ -97,6 +97,9 @@ pub fn write_reconstruction(
         metadata["distances"] = json!(given);
         metadata["unchecked"] = json!(outcome.certificate.unchecked());
     }
+    if !outcome.special_points.is_empty() {
+        metadata["special_points"] = json!(outcome.special_points);
+    }
     if !parameters.spaces.are_usual() {
         metadata["spaces"] = json!(parameters.spaces);
     }

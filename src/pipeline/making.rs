@@ -6,7 +6,7 @@ use super::run::Prepared;
 use super::{Parts, Stage};
 use crate::spaces::MetricName;
 use crosscap_algorithms::certificate::{
-    Certificate, CertificateOptions, ViolationKind, certify, certify_by_distances,
+    Certificate, CertificateOptions, SpecialPoint, ViolationKind, certify, certify_by_distances,
     distances_to_mesh,
 };
 use crosscap_algorithms::homology::{Homology, homology};
@@ -35,6 +35,7 @@ pub(super) struct Triangulated {
 /// A mesh and what is known of it.
 pub(super) struct Judged {
     pub(super) mesh: Mesh,
+    pub(super) special_points: Vec<SpecialPoint>,
     pub(super) homology: Homology,
     pub(super) pieces: Result<Pieces, PiecesError>,
     pub(super) certificate: Certificate,
@@ -150,28 +151,34 @@ impl Making<'_> {
         let homology = homology(&mesh.complex)?;
         let pieces = pieces(&mesh);
         progress.enter(Stage::Certificate);
+        let special_points = special_points(&mesh, &made.waist, &self.prepared.rows.kept);
         Ok(Judged {
-            certificate: self.certify(&mesh, made),
+            certificate: self.certify(&mesh, &special_points, made),
+            special_points,
             mesh,
             homology,
             pieces,
         })
     }
 
-    fn certify(&self, mesh: &Mesh, made: &Triangulated) -> Certificate {
+    fn certify(
+        &self,
+        mesh: &Mesh,
+        special_points: &[SpecialPoint],
+        made: &Triangulated,
+    ) -> Certificate {
         let Self {
             parts, prepared, ..
         } = self;
         let dropped: Vec<usize> = (made.triangulation.dropped.iter())
             .map(|&k| made.waist.rows[k as usize])
             .collect();
-        let special = special_points(mesh, &made.waist, &prepared.rows.kept);
         let options = CertificateOptions {
             points: Some(&prepared.engines.cloud),
             landmark_separation: Some(parts.parameters.dl),
             separation_scale: prepared.engines.scale(),
             unused_landmarks: &prepared.rows.in_input(&dropped),
-            special_points: &special,
+            special_points,
             closed: parts.parameters.boundary.is_empty()
                 && !parts.models.all().iter().any(|m| m.finds_boundary()),
             faithful: parts.parameters.spaces.metric != MetricName::Lifted,

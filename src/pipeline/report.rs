@@ -4,7 +4,7 @@ use super::{Parameters, Stage};
 use crate::given::GivenSpace;
 use crate::spaces::Warning;
 use crate::watched::Distortion;
-use crosscap_algorithms::certificate::{Certificate, Verdict};
+use crosscap_algorithms::certificate::{Certificate, SpecialPoint, Verdict};
 use crosscap_algorithms::homology::Homology;
 use crosscap_algorithms::pieces::{Pieces, PiecesError};
 use crosscap_algorithms::stratify::{ModelCounts, StratifyCounts, Tuning};
@@ -99,6 +99,8 @@ pub struct Outcome {
     pub mesh: Mesh,
     /// Betti numbers and torsion.
     pub homology: Homology,
+    /// Vertices at points that a model declared, with the link that each must have.
+    pub special_points: Vec<SpecialPoint>,
     /// Every level of validity with its violations.
     pub certificate: Certificate,
     /// What the surface is, where the crossing can be undone.

@@ -88,6 +88,7 @@ impl Pipeline {
             homology: judged.homology,
             certificate: judged.certificate,
             pieces: judged.pieces,
+            special_points: judged.special_points,
             report: Report {
                 plugins: parts.plugins(&ground),
                 points: input.cloud.len(),

@@ -4,6 +4,7 @@ use super::crossing::Places;
 use super::distance::{separated, triangle_triangle};
 use super::frame::Frame;
 use super::incidence::Incidence;
+use super::pinched::{Pinched, parted};
 use super::stacked::Planes;
 use super::tree::{Bounds, Tree};
 use super::{Limits, Place, SpecialPoint, Violation, ViolationKind, exceeds};
@@ -131,6 +132,10 @@ pub(super) fn check(
             *flag = true;
         }
     }
+    let pinched: Vec<Pinched> = (special.iter())
+        .filter(|s| s.link.kind() == LinkKind::Pinch)
+        .map(|s| Pinched::new(mesh, incidence, s.vertex))
+        .collect();
     let (mut stacked, mut crossing) = (vec![], vec![]);
     let mut entangled = false;
     // boxes carry the slack of the frame already
@@ -168,15 +173,15 @@ pub(super) fn check(
             }
         }
         let near = away <= apart * apart || planes.centroids_within(s, t, reach);
+        let over = || {
+            let depth = limits.stacked_depth * small;
+            planes.stacked(s, t, limits.stacked_angle, depth, apart)
+        };
         if near
             && !shared.is_some_and(|v| is_special[v as usize])
-            && planes.stacked(
-                s,
-                t,
-                limits.stacked_angle,
-                limits.stacked_depth * small,
-                apart,
-            )
+            && over()
+            && !shared.is_some_and(|v| parted(mesh, incidence, v, [s, t]))
+            && !pinched.iter().any(|p| p.parts([s, t]))
         {
             stacked.push(Place::Triangles([s, t]));
         }
@@ -245,7 +250,8 @@ fn folds(mesh: &Mesh, incidence: &Incidence, limits: &Limits, report: &mut Geome
                 least = least.min(angle);
             }
         }
-        if at_edge.len() == 2 {
+        // An edge that is marked with two cells may be a crease.
+        if at_edge.len() == 2 && incidence.cells[e] != Some(2) {
             worst = worst.min(least);
             report.sharp_edges += usize::from(least < 45.0);
             if least < limits.fold {

@@ -30,6 +30,7 @@ mod heights;
 mod incidence;
 mod indices;
 mod links;
+mod pinched;
 mod quality;
 mod stacked;
 mod tree;

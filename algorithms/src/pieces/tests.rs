@@ -357,7 +357,7 @@ fn umbrella_has_a_pinch_point() {
     assert!(
         found
             .to_string()
-            .contains("in one arc, covered twice by one arc")
+            .contains("in one arc from a pinch point to the boundary, covered twice by one arc")
     );
 }
 
@@ -388,6 +388,11 @@ fn roman_surface_is_a_projective_plane() {
         // Half a great circle of the sphere, closed at opposite points.
         assert_eq!(p.sidedness, Some(Sidedness::OneSided));
     }
+    let text = found.to_string();
+    assert!(
+        text.contains("three arcs, each between two pinch points, each covered"),
+        "{text}"
+    );
 }
 
 #[test]

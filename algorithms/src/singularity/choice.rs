@@ -1,8 +1,8 @@
 //! Singularity models by name.
 
 use super::{
-    BareCurve, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, TriplePoint, TwoPlanes,
-    YJunction,
+    BareCurve, Boundary, CrossingEnd, CurveOnSheet, CurveThroughSheet, IsolatedCrossing,
+    PinchPoint, TriplePoint, TwoPlanes, YJunction,
 };
 use crate::tuning::ModelTuning;
 use crosscap_core::{Error, SingularityModel};
@@ -39,6 +39,10 @@ pub enum ModelName {
     CurveThroughSheet,
     /// [`CurveOnSheet`].
     CurveOnSheet,
+    /// [`PinchPoint`].
+    PinchPoint,
+    /// [`CrossingEnd`].
+    CrossingEnd,
 }
 
 /// Rounds of the refinement by equation (5).
@@ -46,7 +50,7 @@ const REFINEMENT_ROUNDS: usize = 20;
 
 impl ModelName {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::TwoPlanes,
         Self::RefinedTwoPlanes,
         Self::Boundary,
@@ -56,10 +60,12 @@ impl ModelName {
         Self::Curve,
         Self::CurveThroughSheet,
         Self::CurveOnSheet,
+        Self::PinchPoint,
+        Self::CrossingEnd,
     ];
 
     /// Those that compete where the user leaves the choice to the program.
-    pub const AUTO: [Self; 8] = [
+    pub const AUTO: [Self; 10] = [
         Self::TwoPlanes,
         Self::Boundary,
         Self::YJunction,
@@ -68,6 +74,8 @@ impl ModelName {
         Self::Curve,
         Self::CurveThroughSheet,
         Self::CurveOnSheet,
+        Self::PinchPoint,
+        Self::CrossingEnd,
     ];
 
     /// The name on the command line and in reports.
@@ -82,6 +90,8 @@ impl ModelName {
             Self::Curve => "curve",
             Self::CurveThroughSheet => "curve-through-sheet",
             Self::CurveOnSheet => "curve-on-sheet",
+            Self::PinchPoint => "pinch-point",
+            Self::CrossingEnd => "crossing-end",
         }
     }
 
@@ -123,6 +133,8 @@ impl ModelName {
             Self::CurveOnSheet => {
                 Box::new(CurveOnSheet::new(dp, ep)?.tuned(tuning.curve_and_sheet))
             }
+            Self::PinchPoint => Box::new(PinchPoint::new(dp, ep)?),
+            Self::CrossingEnd => Box::new(CrossingEnd::new(dp, ep)?),
         })
     }
 }

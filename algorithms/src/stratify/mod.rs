@@ -17,6 +17,7 @@ mod analysis;
 mod atlas;
 mod cells;
 mod charts;
+mod curve_ends;
 mod distances;
 mod landmarks;
 mod producer;
@@ -29,7 +30,9 @@ mod stratification;
 mod stratifier;
 mod waist;
 
-pub use crate::tuning::{AnalysisTuning, CellTuning, RefinementTuning, SkeletonTuning, Tuning};
+pub use crate::tuning::{
+    AnalysisTuning, CellTuning, EndTuning, RefinementTuning, SkeletonTuning, Tuning,
+};
 pub use analysis::{Analysis, AnalysisOptions, Analyzer, ModelCounts};
 pub use charts::ChartSpace;
 pub use producer::WaistProducer;

@@ -4,6 +4,7 @@ use super::analysis::{Analysis, Analyzer};
 use super::atlas::Reference;
 use super::cells::{Contacts, Labels, Neighborhoods};
 use super::charts::ChartSpace;
+use super::curve_ends;
 use super::distances::within_charts;
 use super::landmarks;
 use super::producer::WaistProducer;
@@ -80,7 +81,8 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         } = analyzer;
         let dl = options.dl;
         let gap = 2.0 * tuning.skeleton.node_spacing * dl;
-        let strata = Strata::of(analysis, space.places(), gap, dl);
+        let mut strata = Strata::of(analysis, space.places(), gap, dl);
+        curve_ends::explain(analyzer, &mut strata)?;
         let skeleton = Skeleton::lay(analyzer, &strata, dl)?;
         let chosen = landmarks::choose(analyzer, &strata, &skeleton, selector, dl, options.seed)?;
         let fits: Vec<&Reference> = skeleton.labelling().collect();

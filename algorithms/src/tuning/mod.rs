@@ -20,6 +20,8 @@ use serde::Serialize;
 pub struct Tuning {
     /// Which stratum every point is in.
     pub analysis: AnalysisTuning,
+    /// Points in which curves end.
+    pub ends: EndTuning,
     /// Landmarks and chains along the curves.
     pub skeleton: SkeletonTuning,
     /// Cells and the neighborhoods in them.
@@ -36,6 +38,7 @@ impl Tuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         analysis: AnalysisTuning::MEASURED,
+        ends: EndTuning::MEASURED,
         skeleton: SkeletonTuning::MEASURED,
         cells: CellTuning::MEASURED,
         front: FrontTuning::MEASURED,
@@ -106,6 +109,44 @@ impl AnalysisTuning {
         fit_spacings: [0.3, 0.12],
         speaks_for: 0.42,
         label_margin: 1.4,
+    };
+}
+
+/// What decides where double curves end. Shares are of the radius of the analysis unless said otherwise.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EndTuning {
+    /// A point of a curve is an end when the middle of the curve within the radius is off by more than this;
+    /// it is 0.5 at the end of a straight curve, and 0 inside.
+    pub shift: f64,
+    /// Radii of the balls in which a model is asked, one after another until it answers.
+    pub radii: [f64; 5],
+    /// Widest ball, where a model asks for a wider one.
+    pub widest: f64,
+    /// A model that needs a wider ball gets one wider by this factor than it asks for.
+    pub spare: f64,
+    /// A ball whose center is farther than this share of its radius from the point that it shows is laid anew
+    /// about that point.
+    pub off_center: f64,
+    /// How often a ball is laid anew.
+    pub attempts: usize,
+    /// Gaps of the curves about an end that are wider than this are filled by the points beside them.
+    pub gap: f64,
+    /// Farthest of the innermost landmarks of the cells about an end, in dl: with those of a random choice
+    /// the triangle between two curves was often that of two cells.
+    pub innermost: f64,
+}
+
+impl EndTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        shift: 0.3,
+        radii: [1.0, 1.4, 2.0, 2.8, 4.0],
+        widest: 5.0,
+        spare: 1.08,
+        off_center: 0.15,
+        attempts: 5,
+        gap: 0.1,
+        innermost: 1.2,
     };
 }
 

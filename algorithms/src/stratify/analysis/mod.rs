@@ -1,5 +1,6 @@
 //! Which stratum every point of the cloud is in.
 
+mod about_end;
 mod competition;
 mod dimension;
 mod explain;
