@@ -37,7 +37,9 @@ fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
     for (i, (a, b)) in found.iter().zip(&settled).enumerate() {
         // A ball whose share is the tolerance within rounding is not settled with others.
         assert_eq!(a.dimension, b.dimension, "point {i}, eps {eps}");
-        assert!(a.neighbors == b.neighbors || a.dimension == 2 && a.neighbors.min(b.neighbors) >= 16);
+        assert!(
+            a.neighbors == b.neighbors || a.dimension == 2 && a.neighbors.min(b.neighbors) >= 16
+        );
     }
     let n = cloud.dimension();
     let balls = Mutex::new(vec![BallMoments::default(); cloud.len()]);

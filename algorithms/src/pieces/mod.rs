@@ -21,11 +21,13 @@ mod description;
 mod error;
 mod gluing;
 mod normalization;
+mod reading;
 mod straightness;
 mod surface;
 mod winding;
 
 pub use error::PiecesError;
+pub use reading::Reading;
 pub use straightness::LEAST_MARGIN;
 pub use surface::Surface;
 pub use winding::wound_triangles;
