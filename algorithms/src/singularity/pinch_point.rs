@@ -15,8 +15,7 @@ use std::f64::consts::TAU;
 /// The sheet is the image of a disc under a map (u, v) that is even in u where v is 0: a point, the double
 /// curve v = 0, and four quarters of the disc between that curve and the curve u = 0, along which the sheet
 /// is folded more and more sharply towards the point. That fold is a curve of two cells: it lets every cell
-/// meet the double curve from one side only. The map is a polynomial of degree 3, see
-/// [`PinchMap`](super::pinch_map).
+/// meet the double curve from one side only. The map is a polynomial of degree 3.
 ///
 /// Source: H. Whitney, The singularities of a smooth n-manifold in (2n - 1)-space, Annals of Mathematics
 /// 45 (1944): up to smooth changes of coordinates the only stable one.
