@@ -20,7 +20,7 @@ pub(super) enum Symptom {
     Ends,
     /// Stars stay open.
     Open,
-    /// The mesh covers gaps of the points.
+    /// The mesh, or a curve of its own, covers gaps of the points, or a curve has too few landmarks.
     Gaps,
     /// Two sheets of points are one in the mesh.
     Merged,
@@ -48,13 +48,17 @@ impl Symptom {
         });
         if outcome.report.curve_points >= SOME && (at_curves || !outcome.failures.is_empty()) {
             Self::Curves
-        } else if found(&|v| v.kind.level() == Level::Geometry) {
+        } else if found(&|v| v.kind.level() == Level::Geometry && v.kind != ViolationKind::BareFold)
+        {
             Self::Folds
         } else if !outcome.failures.is_empty() {
             Self::Open
         } else if found(&|v| v.kind.level() == Level::Edges) {
             Self::Ends
-        } else if found(&|v| v.kind == ViolationKind::BridgedGap) {
+        } else if found(&|v| {
+            use ViolationKind::*;
+            matches!(v.kind, BridgedGap | BareStretch | BareFold)
+        }) {
             Self::Gaps
         } else if found(&|v| v.kind == ViolationKind::MergedSheets) {
             Self::Merged
