@@ -75,7 +75,7 @@ class Findings:
     report: dict = field(repr=False)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class Mesh:
     """A triangulated surface that may cross itself.
 
@@ -108,34 +108,42 @@ class Mesh:
 
     vertices: np.ndarray
     triangles: np.ndarray
-    curve_edges: np.ndarray | None = None
-    curve_cells: np.ndarray | None = None
-    point_index: np.ndarray | None = None
-    triangle_piece: np.ndarray | None = None
-    metadata: dict | None = None
+    curve_edges: np.ndarray
+    curve_cells: np.ndarray
+    point_index: np.ndarray
+    triangle_piece: np.ndarray | None
+    metadata: dict | None
 
-    def __post_init__(self):
-        def keep(name, kind, shape):
-            value = getattr(self, name)
-            if value is not None:
-                value = np.ascontiguousarray(value, dtype=kind)
-                value = value.reshape(shape) if value.size == 0 else value
-                if value.ndim != len(shape):
-                    raise ValueError(f"{name}: found {value.ndim} dimensions, expected {len(shape)}")
-                object.__setattr__(self, name, value)
+    def __init__(
+        self,
+        vertices,
+        triangles,
+        curve_edges=None,
+        curve_cells=None,
+        point_index=None,
+        triangle_piece=None,
+        metadata=None,
+    ):
+        def keep(name, value, kind, shape):
+            value = np.ascontiguousarray(value, dtype=kind)
+            value = value.reshape(shape) if value.size == 0 else value
+            if value.ndim != len(shape):
+                raise ValueError(f"{name}: found {value.ndim} dimensions, expected {len(shape)}")
+            object.__setattr__(self, name, value)
 
-        keep("vertices", np.float64, (0, np.shape(self.vertices)[-1]))
-        keep("triangles", np.int64, (0, 3))
-        keep("curve_edges", np.int64, (0, 2))
-        keep("curve_cells", np.int64, (0,))
-        if self.curve_edges is None or self.curve_cells is None:
-            edges, cells = _crosscap.curves(self.triangles)
-            object.__setattr__(self, "curve_edges", edges)
-            object.__setattr__(self, "curve_cells", cells)
-        if self.point_index is None:
-            object.__setattr__(self, "point_index", np.full(len(self.vertices), -1))
-        keep("point_index", np.int64, (0,))
-        keep("triangle_piece", np.int64, (0,))
+        keep("vertices", vertices, np.float64, (0, np.shape(vertices)[-1]))
+        keep("triangles", triangles, np.int64, (0, 3))
+        if curve_edges is None or curve_cells is None:
+            curve_edges, curve_cells = _crosscap.curves(self.triangles)
+        keep("curve_edges", curve_edges, np.int64, (0, 2))
+        keep("curve_cells", curve_cells, np.int64, (0,))
+        if point_index is None:
+            point_index = np.full(len(self.vertices), -1)
+        keep("point_index", point_index, np.int64, (0,))
+        object.__setattr__(self, "triangle_piece", None)
+        if triangle_piece is not None:
+            keep("triangle_piece", triangle_piece, np.int64, (0,))
+        object.__setattr__(self, "metadata", metadata)
 
     def __repr__(self):
         count, dimension = self.vertices.shape
