@@ -16,13 +16,13 @@ pub enum MetricName {
     /// Straight lines.
     #[default]
     Euclidean,
-    /// Shortest paths through a graph of neighbors: see [`GeodesicMetric`].
+    /// Shortest paths through a graph of neighbors: see [`GeodesicMetric`](crosscap_backends::geodesic::GeodesicMetric).
     Geodesic,
     /// Shortest paths again, every edge measured in the spacing of the points at its ends and given in the unit of
-    /// the data where the spacing is the usual one: see [`GeodesicMetric::conformal`]. For closed surfaces
+    /// the data where the spacing is the usual one: see [`GeodesicMetric::conformal`](crosscap_backends::geodesic::GeodesicMetric::conformal). For closed surfaces
     /// whose points lie many times as densely here as there.
     Conformal,
-    /// Position and tangent plane together: see [`Lifted`]. As the metric of the analysis it takes
+    /// Position and tangent plane together: see [`Lifted`](crosscap_algorithms::metric::Lifted). As the metric of the analysis it takes
     /// crossing sheets apart, and what comes out is the surface before it was made to cross itself.
     Lifted,
 }
