@@ -239,10 +239,10 @@ struct Number {
 macro_rules! numbers {
     (@out) => { None };
     (@out $out:expr) => { Some($out) };
-    ($($kind:ident $stage:ident.$field:ident $([$index:literal])? $(out $out:expr)?;)+) => {
+    ($($kind:ident $stage:ident.$field:ident $(.$inner:ident)? $([$index:literal])? $(out $out:expr)?;)+) => {
         &[$(Number {
-            name: concat!(stringify!($stage), ".", stringify!($field) $(, "[", stringify!($index), "]")?),
-            place: |tuning| Place::$kind(&mut tuning.$stage.$field$([$index])?),
+            name: concat!(stringify!($stage), ".", stringify!($field) $(, ".", stringify!($inner))? $(, "[", stringify!($index), "]")?),
+            place: |tuning| Place::$kind(&mut tuning.$stage.$field$(.$inner)?$([$index])?),
             out: numbers!(@out $($out)?),
         }),+]
     };
@@ -287,6 +287,46 @@ const NUMBERS: &[Number] = numbers! {
     Factor refinement.growth;
     Count refinement.rounds out 0.0;
     Length refinement.open_share out 1.0;
+    Length cells.flat out 0.0;
+    Count front.drops out 0.0;
+    Count front.attempts out 0.0;
+    Count front.curve_passes out 0.0;
+    Count front.shortcut_steps out 0.0;
+    Length models.two_planes.cell_share out 0.0;
+    Length models.two_planes.narrowness out 0.0;
+    Length models.two_planes.astray out 1.0;
+    Length models.two_planes.step;
+    Length models.two_planes.support;
+    Length models.two_planes.witness out 0.0;
+    Length models.two_planes.sine out 0.0;
+    Length models.y_junction.plane;
+    Length models.y_junction.along out 1.0;
+    Length models.y_junction.sine out 0.0;
+    Length models.y_junction.beyond out 1.0;
+    Length models.y_junction.cell_share out 0.0;
+    Length models.triple_point.plane;
+    Length models.triple_point.sheet_share out 0.0;
+    Length models.triple_point.determinant out 0.0;
+    Length models.triple_point.reach;
+    Count models.triple_point.cells out 0.0;
+    Length models.isolated_crossing.plane;
+    Length models.isolated_crossing.sheet_share out 0.0;
+    Length models.isolated_crossing.determinant out 0.0;
+    Length models.isolated_crossing.reach;
+    Length models.isolated_crossing.fourth out 0.0;
+    Length models.boundary.shift out 0.0;
+    Length models.boundary.breadth out 0.0;
+    Length models.boundary.missing out 0.0;
+    Length models.boundary.bend out 1e6;
+    Length models.boundary.step;
+    Length models.boundary.witness out 0.0;
+    Length models.curve_and_sheet.plane;
+    Length models.curve_and_sheet.reach;
+    Length models.curve_and_sheet.sine out 0.0;
+    Length models.curve_and_sheet.clear out 0.0;
+    Length models.curve_and_sheet.steepest out 1e6;
+    Count models.curve_and_sheet.arc;
+    Length models.curve_and_sheet.length out 0.0;
 };
 
 impl Number {

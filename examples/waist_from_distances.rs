@@ -5,8 +5,9 @@
 use crosscap::algorithms::chart::ClassicalScaling;
 use crosscap::algorithms::homology::homology;
 use crosscap::algorithms::predicate::PlanarPredicate;
-use crosscap::algorithms::triangulate::{LargestAngle, Rules, Triangulator};
-use crosscap::core::{CellNeighborhood, SparseDistances, StratifiedLandmarks};
+use crosscap::algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
+use crosscap::algorithms::tuning::FrontTuning;
+use crosscap::core::{CellNeighborhood, SparseDistances, StratifiedLandmarks, Triangulator};
 
 /// Great-circle distances of `n` places spread over the unit sphere: stands for a measured matrix.
 fn measured(n: usize) -> Vec<f64> {
@@ -63,13 +64,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         )?,
     };
     waist.check()?;
-    let triangulation = Triangulator {
+    let triangulation = AdvancingFront {
         chart: &ClassicalScaling,
         test: &PlanarPredicate,
         rule: &LargestAngle,
         largest_circumradius: f64::INFINITY,
         repair: true,
         rules: Rules::MEASURED,
+        tuning: &FrontTuning::MEASURED,
     }
     .triangulate(&waist)?;
     let found = homology(&triangulation.complex)?;

@@ -1,6 +1,6 @@
 //! Which metric, and up to which radius: the same points by several metrics at several radii.
 
-use crate::pipeline::{Parameters, Pipeline};
+use crate::pipeline::{Outcome, Parameters, Pipeline};
 use crate::spaces::{MetricName, Spaces};
 use crate::watched::Distortion;
 use crosscap_backends::parallel::Threads;
@@ -100,6 +100,7 @@ impl Comparison {
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum RunState {
     /// A verified mesh.
     Verified,
@@ -113,6 +114,7 @@ pub enum RunState {
 
 /// One contender at one radius.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ComparedRun {
     /// Name of the contender: the metric of analysis and charts.
     pub metric: String,
@@ -218,16 +220,11 @@ pub fn compare(
     Ok(runs.into_iter().filter_map(OnceLock::into_inner).collect())
 }
 
-fn one(
-    cloud: &PointCloud<f64>,
-    base: &Parameters,
-    comparison: &Comparison,
-    contender: &Contender<'_>,
-    radius: f64,
-) -> ComparedRun {
+/// The parameters of a run at one radius.
+fn at_radius(base: &Parameters, comparison: &Comparison, radius: f64) -> Parameters {
     let eps = comparison.analysis_eps.unwrap_or(radius);
     let usual = Parameters::new(eps, base.dl);
-    let parameters = Parameters {
+    Parameters {
         eps,
         tri_eps: Some(radius),
         dp: comparison.dp.unwrap_or(usual.dp),
@@ -238,11 +235,20 @@ fn one(
         },
         threads: Some(1),
         ..base.clone()
-    };
+    }
+}
+
+/// One contender at one radius.
+fn one(
+    cloud: &PointCloud<f64>,
+    base: &Parameters,
+    comparison: &Comparison,
+    contender: &Contender<'_>,
+    radius: f64,
+) -> ComparedRun {
     let since = Instant::now();
-    let pipeline = (contender.setup)(cloud, parameters);
+    let pipeline = (contender.setup)(cloud, at_radius(base, comparison, radius));
     let outcome = pipeline.and_then(|mut pipeline| pipeline.reconstruct(cloud));
-    let seconds = Some(since.elapsed().as_secs_f64());
     let mut run = ComparedRun {
         metric: contender.name.clone(),
         eps: radius,
@@ -253,44 +259,43 @@ fn one(
         triangles: None,
         distortion: None,
         reason: None,
-        seconds,
+        seconds: Some(since.elapsed().as_secs_f64()),
     };
-    let outcome = match outcome {
-        Ok(outcome) => outcome,
-        Err(error) => {
-            run.reason = Some(error.to_string());
-            return run;
+    match outcome {
+        Ok(outcome) => {
+            let betti = outcome.homology.betti_rational;
+            (run.state, run.reason) = ended(&outcome, comparison.betti.filter(|&k| k != betti));
+            run.betti = Some(betti);
+            run.betti_mod_2 = Some(outcome.homology.betti_mod2);
+            run.vertices = Some(outcome.mesh.complex.vertices);
+            run.triangles = Some(outcome.mesh.complex.triangles.len());
+            run.distortion = Some(outcome.report.chart_distortion);
         }
-    };
-    let betti = outcome.homology.betti_rational;
-    run.betti = Some(betti);
-    run.betti_mod_2 = Some(outcome.homology.betti_mod2);
-    run.vertices = Some(outcome.mesh.complex.vertices);
-    run.triangles = Some(outcome.mesh.complex.triangles.len());
-    run.distortion = Some(outcome.report.chart_distortion);
-    let known = comparison.betti.filter(|&known| known != betti);
-    if !outcome.is_verified() {
-        run.state = RunState::Refused;
-        let violations = outcome.certificate.violations().map(ToString::to_string);
-        let mut reasons = outcome
-            .failures
-            .iter()
-            .map(ToString::to_string)
-            .chain(violations);
-        run.reason = reasons.next();
-        let more = reasons.count();
-        if let (Some(reason), 1..) = (&mut run.reason, more) {
-            reason.push_str(&format!(" (and {more} more)"));
-        }
-    } else if let Some(known) = known {
-        run.state = RunState::OtherBetti;
-        run.reason = Some(format!("the surface is known to have {known:?}"));
-    } else {
-        run.state = RunState::Verified;
-        let warnings = outcome.report.warnings.iter().map(ToString::to_string);
-        run.reason = warnings.reduce(|a, b| a + "; " + &b);
+        Err(error) => run.reason = Some(error.to_string()),
     }
     run
+}
+
+/// How a run that gave a mesh ended, and what there is to say of it; `other` are the Betti numbers that the surface
+/// is known to have where the mesh has not these.
+fn ended(outcome: &Outcome, other: Option<[usize; 3]>) -> (RunState, Option<String>) {
+    if !outcome.is_verified() {
+        let violations = outcome.certificate.violations().map(ToString::to_string);
+        let failures = outcome.failures.iter().map(ToString::to_string);
+        let mut reasons = failures.chain(violations);
+        let mut reason = reasons.next();
+        let more = reasons.count();
+        if let (Some(reason), 1..) = (&mut reason, more) {
+            reason.push_str(&format!(" (and {more} more)"));
+        }
+        return (RunState::Refused, reason);
+    }
+    if let Some(known) = other {
+        let reason = format!("the surface is known to have {known:?}");
+        return (RunState::OtherBetti, Some(reason));
+    }
+    let warnings = outcome.report.warnings.iter().map(ToString::to_string);
+    (RunState::Verified, warnings.reduce(|a, b| a + "; " + &b))
 }
 
 /// The runs of neighboring radii that all work, as first and last radius, in order; `runs` are

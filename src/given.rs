@@ -13,6 +13,7 @@ use serde::Serialize;
 
 /// What became of distances that were the only input.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct GivenSpace {
     /// Dimension of the places.
     pub dimension: usize,

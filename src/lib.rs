@@ -10,6 +10,7 @@ pub mod auto;
 #[doc(hidden)]
 pub mod command;
 pub mod comparison;
+mod engines;
 mod given;
 pub mod pipeline;
 pub mod refusal;

@@ -1,11 +1,8 @@
 //! Which distances a reconstruction is made with, and what serves them.
 
-use crosscap_algorithms::metric::{BruteForceOracle, CheckedMetric, Lifted, tangent_planes};
+use crosscap_algorithms::metric::{BruteForceOracle, CheckedMetric};
 use crosscap_algorithms::space::Space;
-use crosscap_algorithms::stratify::ChartSpace;
-use crosscap_backends::euclidean::EuclideanOracle;
-use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric, GraphReport, GraphWarning};
-use crosscap_backends::parallel::Threads;
+use crosscap_backends::geodesic::{EdgeRule, GraphWarning};
 use crosscap_core::{Error, MetricSpace, PointCloud};
 use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
@@ -14,20 +11,30 @@ use std::str::FromStr;
 /// A metric on the points, by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum MetricName {
     /// Straight lines.
     #[default]
     Euclidean,
-    /// Shortest paths through a graph of neighbors: see [`GeodesicMetric`].
+    /// Shortest paths through a graph of neighbors: see [`GeodesicMetric`](crosscap_backends::geodesic::GeodesicMetric).
     Geodesic,
-    /// Position and tangent plane together: see [`Lifted`]. As the metric of the analysis it takes
+    /// Shortest paths again, every edge measured in the spacing of the points at its ends and given in the unit of
+    /// the data where the spacing is the usual one: see [`GeodesicMetric::conformal`](crosscap_backends::geodesic::GeodesicMetric::conformal). For closed surfaces
+    /// whose points lie many times as densely here as there.
+    Conformal,
+    /// Position and tangent plane together: see [`Lifted`](crosscap_algorithms::metric::Lifted). As the metric of the analysis it takes
     /// crossing sheets apart, and what comes out is the surface before it was made to cross itself.
     Lifted,
 }
 
 impl MetricName {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Euclidean, Self::Geodesic, Self::Lifted];
+    pub const ALL: [Self; 4] = [
+        Self::Euclidean,
+        Self::Geodesic,
+        Self::Conformal,
+        Self::Lifted,
+    ];
 }
 
 impl fmt::Display for MetricName {
@@ -35,6 +42,7 @@ impl fmt::Display for MetricName {
         f.write_str(match self {
             Self::Euclidean => "euclidean",
             Self::Geodesic => "geodesic",
+            Self::Conformal => "conformal",
             Self::Lifted => "lifted",
         })
     }
@@ -48,13 +56,14 @@ impl FromStr for MetricName {
         known.ok_or_else(|| Error::Parameter {
             name: "metric",
             value: name.into(),
-            expected: "euclidean, geodesic or lifted".into(),
+            expected: "euclidean, geodesic, conformal or lifted".into(),
         })
     }
 }
 
 /// How large the neighborhoods of the analysis are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Neighborhoods {
     /// Radius eps everywhere.
     #[default]
@@ -187,7 +196,8 @@ impl Spaces {
         Ok(())
     }
 
-    fn uses(&self, name: MetricName) -> bool {
+    /// Whether one of the metrics is this one.
+    pub fn uses(&self, name: MetricName) -> bool {
         self.metric == name || self.charts() == name
     }
 }
@@ -195,6 +205,7 @@ impl Spaces {
 /// What may be wrong with a result although nothing failed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Warning {
     /// About the graph of geodesic distances.
     Graph(GraphWarning),
@@ -223,89 +234,6 @@ impl fmt::Display for Warning {
                  lengths of paths; give more of them, or decrease dl"
             ),
         }
-    }
-}
-
-/// Points that a tangent plane is fitted to, for the lifted metric.
-const TANGENT_POINTS: usize = 32;
-
-/// What serves the metrics of one reconstruction.
-pub(crate) struct Engines {
-    /// The points as the analysis sees them: lifted for the lifted metric.
-    pub(crate) cloud: PointCloud<f64>,
-    /// Straight lines between them.
-    pub(crate) euclidean: EuclideanOracle<f64>,
-    geodesic: Option<GeodesicMetric<f64>>,
-    /// Straight lines in the other of the two: lifted for charts alone, or not lifted for charts.
-    other: Option<EuclideanOracle<f64>>,
-    spaces: Spaces,
-}
-
-impl Engines {
-    pub(crate) fn new(
-        spaces: &Spaces,
-        eps: f64,
-        positions: &PointCloud<f64>,
-        threads: &Threads,
-    ) -> Result<Self, Error> {
-        let flat = EuclideanOracle::new(positions.clone())?;
-        let lifted = if spaces.uses(MetricName::Lifted) {
-            let count = TANGENT_POINTS.min(positions.len().saturating_sub(1));
-            let bases = tangent_planes(positions, &flat, count, threads)?;
-            let weight = spaces.lift.unwrap_or(2.0 * eps);
-            let lifted = Lifted::new(positions.clone(), 2, bases, weight)?.coordinates()?;
-            Some(EuclideanOracle::new(lifted)?)
-        } else {
-            None
-        };
-        let (euclidean, other) = match (lifted, spaces.metric) {
-            (Some(lifted), MetricName::Lifted) => (lifted, Some(flat)),
-            (lifted, _) => (flat, lifted),
-        };
-        let geodesic = if spaces.uses(MetricName::Geodesic) {
-            Some(threads.install(|| GeodesicMetric::new(&euclidean, spaces.graph))?)
-        } else {
-            None
-        };
-        Ok(Self {
-            cloud: (**euclidean.cloud()).clone(),
-            euclidean,
-            geodesic,
-            other,
-            spaces: spaces.clone(),
-        })
-    }
-
-    /// The space of the analysis.
-    pub(crate) fn analysis(&self) -> Space<'_, f64> {
-        match &self.geodesic {
-            Some(geodesic) if self.spaces.metric == MetricName::Geodesic => {
-                Space::of(geodesic).with_places(&self.cloud)
-            }
-            _ => Space::of(&self.euclidean),
-        }
-    }
-
-    /// What measures the charts.
-    pub(crate) fn charts(&self) -> ChartSpace<'_, f64> {
-        let own = match (self.spaces.charts(), self.spaces.metric) {
-            (MetricName::Geodesic, _) => self.geodesic.as_ref().map(Space::of),
-            (MetricName::Lifted, MetricName::Lifted) => None,
-            (MetricName::Euclidean, MetricName::Euclidean | MetricName::Geodesic) => None,
-            _ => self.other.as_ref().map(Space::of),
-        };
-        own.map_or(ChartSpace::Places, ChartSpace::Metric)
-    }
-
-    /// The graph of geodesic distances, where there is one.
-    pub(crate) fn graph(&self) -> Option<&GraphReport> {
-        self.geodesic.as_ref().map(GeodesicMetric::report)
-    }
-
-    /// What speaks against the distances.
-    pub(crate) fn warnings(&self) -> Vec<Warning> {
-        let report = self.graph().map(GraphReport::warnings);
-        report.into_iter().flatten().map(Warning::Graph).collect()
     }
 }
 

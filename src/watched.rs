@@ -7,6 +7,7 @@ use std::sync::Mutex;
 
 /// Shares of the squared distances that charts do not carry, 0 (all flat) to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Distortion {
     /// Mean over all charts that were made, those of repairs included.
     pub mean: f64,

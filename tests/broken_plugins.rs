@@ -9,13 +9,18 @@ use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::{TriplePoint, TwoPlanes};
 use crosscap_algorithms::space::Space;
-use crosscap_algorithms::stratify::{AnalysisOptions, Analyzer, Dimensions, Tuning};
+use crosscap_algorithms::stratify::{
+    Analysis, AnalysisOptions, Analyzer, Cells, Ground, Stratification, Stratifier, Tuning,
+    WaistProducer,
+};
 use crosscap_algorithms::surfaces::Random;
 use crosscap_algorithms::triangulate::MinimumCircumradius;
 use crosscap_backends::euclidean::EuclideanOracle;
+use crosscap_core::execute::Execute;
 use crosscap_core::{
-    Chart, ChartTriangle, CompatibilityTest, Decomposition, DimensionEstimate, LocalPoints,
-    Located, Meeting, Neighbor, Neighborhood, Rejection, TriangleRule,
+    BallDimension, Balls, Chart, ChartTriangle, CompatibilityTest, CurveEdge, Decomposition,
+    DimensionEstimate, Incomplete, LocalPoints, Located, Meeting, Neighbor, Neighborhood,
+    Rejection, StratifiedLandmarks, TriangleRule, Triangulation, TriangulationCounts, Triangulator,
 };
 
 const NAME: &str = "the-broken-one";
@@ -214,7 +219,7 @@ fn analysis(
     let estimator = PrincipalComponents::new(0.05)?;
     let analyzer = Analyzer {
         space: Space::new(metric, oracle).with_places(&cloud),
-        dimensions: Dimensions::by(&estimator),
+        estimator: &estimator,
         models: &[],
         execute: &Serial,
         tuning: &Tuning::MEASURED,
@@ -395,6 +400,150 @@ fn estimators() {
     // A single point.
     let found = by(|i| estimate(if i == 700 { 1 } else { 2 }, 2.0, 1.0));
     assert!(names(found, "rounded", 1200).contains(" at 700: "));
+}
+
+/// What is wrong with answers for all balls together.
+#[derive(Clone, Copy)]
+enum Batch {
+    Good,
+    Short,
+    Other,
+    Many,
+}
+
+struct SaysOfAll(Batch);
+
+impl DimensionEstimator for SaysOfAll {
+    type Scalar = f64;
+    fn estimate(&self, _near: &Neighborhood<'_, f64>) -> Result<DimensionEstimate, Error> {
+        Ok(estimate(2, 2.0, 1.0))
+    }
+    fn estimate_all(
+        &self,
+        balls: &Balls<'_, f64>,
+        _execute: &dyn Execute,
+    ) -> Result<Vec<BallDimension>, Error> {
+        let (count, dimension) = match self.0 {
+            Batch::Good => (balls.len(), 2),
+            Batch::Short => (balls.len() - 1, 2),
+            Batch::Other => (balls.len(), 3),
+            Batch::Many => (balls.len(), 40),
+        };
+        let ball = BallDimension {
+            neighbors: 40,
+            dimension,
+        };
+        Ok(vec![ball; count])
+    }
+    fn name(&self) -> &str {
+        NAME
+    }
+}
+
+#[test]
+fn estimators_of_all_balls_together() {
+    let by = |batch| {
+        on_sphere()
+            .estimator(Box::new(SaysOfAll(batch)))
+            .reconstruct(&sphere())
+    };
+    assert!(by(Batch::Good).unwrap().is_verified());
+    names(by(Batch::Short), "batch: an answer for every ball", 1200);
+    names(by(Batch::Other), "batch: of all balls together", 1200);
+    names(by(Batch::Many), "answer: k points", 1200);
+}
+
+// Triangulators and stratifiers
+
+/// A triangulator that gives up everywhere, with what is wrong.
+struct Lost(fn(&mut Triangulation));
+
+impl Triangulator<f64> for Lost {
+    fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
+        let count = waist.strata.len();
+        let open = (0..count as u32).map(|landmark| Incomplete { landmark });
+        let mut found = Triangulation {
+            complex: Complex::new(count, vec![], waist.curve_edges.clone())?,
+            dropped: vec![],
+            incomplete: open.collect(),
+            counts: TriangulationCounts::default(),
+        };
+        (self.0)(&mut found);
+        Ok(found)
+    }
+    fn name(&self) -> &str {
+        NAME
+    }
+}
+
+#[test]
+fn triangulators() {
+    let by = |wrong| {
+        on_sphere()
+            .triangulator(Box::new(Lost(wrong)))
+            .reconstruct(&sphere())
+    };
+    // Without a triangle there is no surface, but no law is broken.
+    assert!(!matches!(by(|_| ()), Err(Error::Law { .. })));
+    let far = by(|t| {
+        let last = t.complex.vertices as u32 - 1;
+        t.complex.triangles.push([0, 1, last]);
+    });
+    names(far, "answer: the corners of a triangle", 1200);
+    names(by(|t| t.complex.vertices += 1), "answer: the complex", 1200);
+    let edge = by(|t| t.complex.curve_edges.push(CurveEdge::new(0, 1, 4)));
+    names(edge, "answer: the curve edges", 1200);
+    names(
+        by(|t| t.dropped = vec![3, 2]),
+        "answer: what was dropped",
+        1200,
+    );
+}
+
+/// The usual way to the waist with a last step that spoils it.
+struct Astray(fn(&mut Stratification<f64>));
+
+struct Spoiling<'p> {
+    usual: Box<dyn WaistProducer<f64> + 'p>,
+    spoil: fn(&mut Stratification<f64>),
+}
+
+impl Stratifier<f64> for Astray {
+    fn cut<'p>(
+        &'p self,
+        ground: &'p Ground<'p, f64>,
+        analysis: &'p Analysis,
+    ) -> Result<Box<dyn WaistProducer<f64> + 'p>, Error> {
+        Ok(Box::new(Spoiling {
+            usual: Cells.cut(ground, analysis)?,
+            spoil: self.0,
+        }))
+    }
+    fn name(&self) -> &str {
+        NAME
+    }
+}
+
+impl WaistProducer<f64> for Spoiling<'_> {
+    fn waist(&self, extra: &[usize]) -> Result<Stratification<f64>, Error> {
+        let mut waist = self.usual.waist(extra)?;
+        (self.spoil)(&mut waist);
+        Ok(waist)
+    }
+}
+
+#[test]
+fn stratifiers() {
+    let by = |wrong| {
+        on_sphere()
+            .stratifier(Box::new(Astray(wrong)))
+            .reconstruct(&sphere())
+    };
+    assert!(by(|_| ()).unwrap().is_verified());
+    let law = "answer: every landmark stands for a row";
+    names(by(|s| s.rows[5] = s.rows[4]), law, 1200);
+    names(by(|s| s.rows[5] = 1200), law, 1200);
+    names(by(|s| s.rows.truncate(5)), law, 1200);
 }
 
 // Singularity models

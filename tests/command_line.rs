@@ -210,9 +210,36 @@ fn every_command_explains_itself() {
 }
 
 #[test]
+fn help_comes_in_two_lengths() {
+    let room = Room::new();
+    let options = |words: &str| {
+        let ran = room.run(words).expect(0);
+        let lines = ran.out.lines().map(str::trim_start);
+        lines.filter(|line| line.starts_with('-')).count()
+    };
+    let short = options("reconstruct --help");
+    assert!((10..=14).contains(&short), "{short}");
+    assert_eq!(short, options("reconstruct -h"));
+    assert!(options("reconstruct --help-all") > 30);
+    // Options that most runs need stand in the first group, whatever group was defined before them.
+    let all = room.run("reconstruct --help-all").expect(0).out;
+    let at = |text: &str| all.find(text).unwrap_or_else(|| panic!("{text}"));
+    for name in [
+        "--boundary <",
+        "--threads <",
+        "--report <",
+        "--keep-unverified",
+    ] {
+        assert!(at(name) < at("Estimators and tolerances:"), "{name}");
+    }
+    assert!(at("--tries <") > at("Attempts and what they leave:"));
+    room.run("reconstruct --help").expect(0).says("--help-all");
+}
+
+#[test]
 fn long_names_stand_beside_the_short_ones() {
     let room = Room::new();
-    let ran = room.run("reconstruct --help").expect(0);
+    let ran = room.run("reconstruct --help-all").expect(0);
     for name in [
         "--epsilon",
         "--triangulation-epsilon",
@@ -1016,6 +1043,82 @@ fn meshes_of_four_dimensions_are_laid_out() {
     }
 }
 
+/// A trajectory of CHARMM without a cell.
+fn dcd(frames: &[&[[f32; 3]]]) -> Vec<u8> {
+    let mut out = Vec::new();
+    let mut record = |content: Vec<u8>| {
+        let mark = (content.len() as u32).to_le_bytes();
+        out.extend(mark);
+        out.extend(content);
+        out.extend(mark);
+    };
+    let mut header = b"CORD".to_vec();
+    header.resize(84, 0);
+    record(header);
+    record(vec![0; 4]);
+    record((frames[0].len() as u32).to_le_bytes().to_vec());
+    for frame in frames {
+        for axis in 0..3 {
+            record(frame.iter().flat_map(|p| p[axis].to_le_bytes()).collect());
+        }
+    }
+    out
+}
+
+#[test]
+fn atoms_of_a_trajectory_have_the_names_of_its_topology() {
+    let room = Room::new();
+    let frame = |x: f32| [[x, 0.0, 0.0], [0.0, 1.0 + x, 0.0], [0.0, 0.0, 2.0]];
+    let frames: Vec<_> = (0..40).map(|k| frame(k as f32 / 7.0)).collect();
+    let frames: Vec<&[[f32; 3]]> = frames.iter().map(|f| &f[..]).collect();
+    room.write("run.dcd", dcd(&frames));
+    room.write("top.xyz", "3\nwater\nO 0 0 0\nH 0 1 0\nH 0 0 1\n");
+    room.write("more.xyz", "2\n\nO 0 0 0\nH 0 1 0\n");
+    room.run("dimension run.dcd -k 8 --estimator mle")
+        .expect(0)
+        .says("40 points of R^9");
+    room.run("dimension run.dcd --topology top.xyz --atoms element:H -k 8 --estimator mle")
+        .expect(0)
+        .says("40 points of R^6");
+    room.run("dimension run.dcd --atoms element:H -k 8")
+        .expect(2)
+        .complains("no atom is called");
+    room.run("dimension run.dcd --topology more.xyz --atoms heavy -k 8")
+        .expect(2)
+        .complains("more.xyz: found 2 atoms, expected 3");
+}
+
+#[test]
+fn points_are_shown_alone_and_with_their_mesh() {
+    let room = Room::new();
+    write_points(room.path("points.npy"), &ball(300)).unwrap();
+    for name in ["points.html", "points.png"] {
+        room.run(&format!("view points.npy -o {name}"))
+            .expect(0)
+            .says("300 points of R^3");
+    }
+    // A format of meshes and of points alike.
+    write_points(room.path("points.ply"), &ball(300)).unwrap();
+    room.run("view points.ply -o ply.html")
+        .expect(0)
+        .says("300 points of R^3");
+    room.mesh("spheres.npz", &two_spheres(12));
+    room.run("view spheres.npz --points points.npy -o both.html")
+        .expect(0);
+    let page = |name: &str| std::fs::read_to_string(room.path(name)).unwrap();
+    for name in ["height", "dimension", "distance to the mesh"] {
+        assert!(
+            page("both.html").contains(&format!("\"name\":\"{name}\"")),
+            "{name}"
+        );
+    }
+    assert!(!page("points.html").contains("distance to the mesh"));
+    room.run("view points.npy --points points.ply -o c.html")
+        .expect(2)
+        .complains("holds points and no mesh");
+    room.run("view points.npy -o points.npy").expect(2);
+}
+
 #[test]
 fn pictures_are_pages_and_images() {
     let room = Room::new();
@@ -1501,7 +1604,7 @@ fn a_comparison_that_makes_no_sense_is_refused() {
         ("odd.json -o odd.json", "would be overwritten"),
         (
             "p.npy -o t.csv --dl 0.2 --metrics euclidean,taxicab",
-            "euclidean, geodesic or lifted",
+            "euclidean, geodesic, conformal or lifted",
         ),
         ("p.npy -o t.csv --dl 0.2 --eps 2:1:3", "2 is not below 1"),
         (

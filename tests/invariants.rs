@@ -10,14 +10,15 @@ use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::TwoPlanes;
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::{
-    AnalysisOptions, Analyzer, ChartSpace, Cut, Dimensions, Stratification, StratifyOptions,
-    Tuning, WaistProducer,
+    AnalysisOptions, Analyzer, ChartSpace, Cut, Stratification, StratifyOptions, Tuning,
+    WaistProducer,
 };
 use crosscap_algorithms::surfaces::{Random, RigidMotion, embed, scaled};
-use crosscap_algorithms::triangulate::{LargestAngle, Rules, Triangulator};
+use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
+use crosscap_algorithms::tuning::FrontTuning;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::linear_program::LinearProgramTest;
-use crosscap_core::{Scalar, StratifiedLandmarks};
+use crosscap_core::{Scalar, StratifiedLandmarks, Triangulator};
 use proptest::prelude::*;
 use std::marker::PhantomData;
 
@@ -318,7 +319,7 @@ fn waist_of<S: Scalar>(
     let estimator = PrincipalComponents::new(p.dt).unwrap();
     let analyzer = Analyzer {
         space: Space::new(&metric, oracle),
-        dimensions: Dimensions::by(&estimator),
+        estimator: &estimator,
         models: &models,
         execute: &Serial,
         tuning: &Tuning::MEASURED,
@@ -348,13 +349,14 @@ fn complex_of(case: &Case, waist: &StratifiedLandmarks<f64>) -> Complex {
 
 /// The same in the precision of the waist.
 fn triangulated<S: Scalar>(waist: &StratifiedLandmarks<S>) -> Complex {
-    let triangulator = Triangulator {
+    let triangulator = AdvancingFront {
         chart: &ClassicalScaling,
         test: &PlanarPredicate,
         rule: &LargestAngle,
         largest_circumradius: f64::INFINITY,
         repair: true,
         rules: Rules::MEASURED,
+        tuning: &FrontTuning::MEASURED,
     };
     triangulator.triangulate(waist).unwrap().complex
 }

@@ -16,7 +16,8 @@ use crosscap_algorithms::singularity::{
     BareCurve, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, OneSheet, TriplePoint,
     TwoPlanes, YJunction,
 };
-use crosscap_algorithms::triangulate::{LargestAngle, MinimumCircumradius};
+use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, MinimumCircumradius, Rules};
+use crosscap_algorithms::tuning::FrontTuning;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
 use crosscap_backends::linear_program::LinearProgramTest;
@@ -195,6 +196,17 @@ law_tests! {
         settings: settings();
 }
 
+/// With the parts of the pipeline.
+const FRONT: AdvancingFront<'static> = AdvancingFront {
+    chart: &ClassicalScaling,
+    test: &PlanarPredicate,
+    rule: &LargestAngle,
+    largest_circumradius: f64::INFINITY,
+    repair: true,
+    rules: Rules::MEASURED,
+    tuning: &FrontTuning::MEASURED,
+};
+
 /// Pairs of triangles are quickly tried.
 fn many() -> Settings {
     Settings {
@@ -213,4 +225,5 @@ law_tests! {
     mod linear_program = compatibility(&LinearProgramTest), settings: many();
     mod minimum_circumradius = rule(&MinimumCircumradius), settings: settings();
     mod largest_angle = rule(&LargestAngle), settings: settings();
+    mod advancing_front = triangulator(&FRONT);
 }

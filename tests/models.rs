@@ -5,6 +5,8 @@ use crosscap::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap::prelude::*;
 use crosscap_algorithms::certificate::LinkKind;
 use crosscap_algorithms::singularity::ModelName;
+use crosscap_algorithms::surfaces::PointKind;
+use crosscap_core::squared_distance;
 
 struct Case {
     surface: &'static str,
@@ -17,7 +19,7 @@ struct Case {
     links: &'static [(LinkKind, Option<usize>)],
 }
 
-const CASES: [Case; 6] = [
+const CASES: [Case; 7] = [
     Case {
         surface: "three_spheres",
         points: 60_000,
@@ -81,6 +83,15 @@ const CASES: [Case; 6] = [
         betti: [1, 1, 0],
         links: &[(LinkKind::Arc, None)],
     },
+    Case {
+        surface: "cross_cap",
+        points: 10_000,
+        eps: 0.118,
+        dl: 0.047,
+        models: &[ModelName::TwoPlanes, ModelName::PinchPoint],
+        betti: [1, 0, 1],
+        links: &[(LinkKind::Pinch, Some(2)), (LinkKind::Double, None)],
+    },
 ];
 
 fn reconstruct(case: &Case, seed: u64, models: &[ModelName]) -> Outcome {
@@ -125,6 +136,36 @@ fn every_model_on_its_surface() {
         let outcome = reconstruct(case, 0, case.models);
         assert_eq!(fault(case, &outcome), None);
     }
+}
+
+#[test]
+fn pinch_points_are_in_their_places_and_come_undone() {
+    let case = CASES.iter().find(|c| c.surface == "cross_cap").unwrap();
+    let outcome = reconstruct(case, 0, case.models);
+    assert_eq!(fault(case, &outcome), None);
+    let surface = SampleSurface::find(case.surface).unwrap();
+    let truth = surface.points().iter();
+    let pinches: Vec<_> = truth.filter(|p| p.kind == PointKind::Pinch).collect();
+    assert_eq!(outcome.special_points.len(), pinches.len());
+    for pinch in pinches {
+        let found = (outcome.special_points.iter())
+            .map(|s| outcome.mesh.vertices.point(s.vertex as usize))
+            .map(|place| squared_distance(place, &pinch.place).sqrt());
+        let nearest = found.fold(f64::INFINITY, f64::min);
+        assert!(nearest < 0.5 * case.dl, "{nearest}");
+    }
+    // Undone it is a projective plane, of Euler characteristic 1; the image has 2.
+    let pieces = outcome.pieces.unwrap();
+    let [piece] = &pieces.pieces[..] else {
+        panic!("{pieces}");
+    };
+    assert_eq!((piece.name.as_str(), piece.euler), ("projective plane", 1));
+    assert_eq!(outcome.homology.euler, 2);
+    let text = pieces.to_string();
+    assert!(
+        text.contains("in one arc between two pinch points"),
+        "{text}"
+    );
 }
 
 #[test]

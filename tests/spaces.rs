@@ -1,13 +1,23 @@
 //! Spaces that are no Euclidean ones, and plug-ins that do what the default does.
 
 use crosscap::prelude::*;
+use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
+use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::{TriplePoint, TwoPlanes};
+use crosscap_algorithms::stratify::Cells;
 use crosscap_algorithms::surfaces::Random;
+use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
+use crosscap_algorithms::tuning::FrontTuning;
 use crosscap_backends::files::Distances;
-use crosscap_core::{Decomposition, LocalPoints, Rejection};
+use crosscap_core::execute::Execute;
+use crosscap_core::{
+    BallDimension, Balls, Decomposition, DimensionEstimate, LocalPoints, Neighborhood, Rejection,
+    StratifiedLandmarks, Triangulation, Triangulator,
+};
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// `count` distances a point, by a function of two points.
 fn dense(count: usize, distance: impl Fn(usize, usize) -> f64) -> Distances {
@@ -104,6 +114,8 @@ fn plug_ins_that_do_what_the_default_does_change_nothing() {
         pipeline().oracle(Box::new(BruteForceOracle::new(metric.clone()))),
         pipeline().estimator(Box::new(estimator)),
         pipeline().analysis_metric(Box::new(metric)),
+        pipeline().stratifier(Box::new(Cells)),
+        pipeline().triangulator(Box::new(Front)),
     ];
     for mut other in others {
         let outcome = other.reconstruct(&cloud).unwrap();
@@ -112,6 +124,113 @@ fn plug_ins_that_do_what_the_default_does_change_nothing() {
         assert_eq!(outcome.report.models, default.report.models);
         assert_eq!(outcome.report.mean_neighbors, default.report.mean_neighbors);
     }
+}
+
+/// The advancing front with its usual parts.
+struct Front;
+
+impl Triangulator<f64> for Front {
+    fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
+        let front = AdvancingFront {
+            chart: &ClassicalScaling,
+            test: &PlanarPredicate,
+            rule: &LargestAngle,
+            largest_circumradius: f64::INFINITY,
+            repair: true,
+            rules: Rules::MEASURED,
+            tuning: &FrontTuning::MEASURED,
+        };
+        front.triangulate(waist)
+    }
+    fn name(&self) -> &str {
+        "front"
+    }
+}
+
+/// Principal components that answer for all balls together, and for no more than the spot checks one by one.
+struct Together {
+    usual: PrincipalComponents<f64>,
+    alone: AtomicUsize,
+}
+
+impl DimensionEstimator for Together {
+    type Scalar = f64;
+    fn estimate(&self, ball: &Neighborhood<'_, f64>) -> Result<DimensionEstimate, Error> {
+        assert!(self.alone.fetch_add(1, Ordering::Relaxed) < 16);
+        self.usual.estimate(ball)
+    }
+    fn estimate_all(
+        &self,
+        balls: &Balls<'_, f64>,
+        execute: &dyn Execute,
+    ) -> Result<Vec<BallDimension>, Error> {
+        self.usual.estimate_all(balls, execute)
+    }
+    fn of_variances(&self, variances: &[f64]) -> Option<DimensionEstimate> {
+        self.usual.of_variances(variances)
+    }
+    fn name(&self) -> &str {
+        "together"
+    }
+}
+
+#[test]
+fn an_estimator_that_is_plugged_in_can_answer_for_all_balls_together() {
+    let cloud = two_spheres();
+    let default = Pipeline::new(parameters()).unwrap().reconstruct(&cloud);
+    let estimator = Together {
+        usual: PrincipalComponents::new(parameters().dt).unwrap(),
+        alone: AtomicUsize::new(0),
+    };
+    let outcome = Pipeline::new(parameters())
+        .unwrap()
+        .estimator(Box::new(estimator))
+        .reconstruct(&cloud)
+        .unwrap();
+    assert_eq!(outcome.mesh, default.unwrap().mesh);
+    assert_eq!(
+        outcome.report.plugins.estimator.as_deref(),
+        Some("together")
+    );
+}
+
+/// Half of the straight line.
+struct Half(Euclidean<f64>);
+
+impl MetricSpace for Half {
+    type Scalar = f64;
+    fn len(&self) -> usize {
+        self.0.len()
+    }
+    fn distance(&self, a: usize, b: usize) -> f64 {
+        0.5 * self.0.distance(a, b)
+    }
+    fn name(&self) -> &str {
+        "half"
+    }
+}
+
+#[test]
+fn charts_follow_the_metric_of_the_analysis() {
+    let surface = SampleSurface::find("sphere").unwrap();
+    let cloud = surface.sample(&Sampling::new(2000, 3)).unwrap().points;
+    let half = || Box::new(Half(Euclidean::new(cloud.clone())));
+    let by = |pipeline: Pipeline| {
+        let outcome = { pipeline }.reconstruct(&cloud).unwrap();
+        let names = outcome.report.plugins.clone();
+        assert_eq!(names.metric, "half");
+        (names.chart_metric, outcome)
+    };
+    // Half the distances, half the lengths.
+    let p = Parameters::new(0.3, 0.12).surface();
+    let pipeline = |p: &Parameters| Pipeline::new(p.clone()).unwrap().analysis_metric(half());
+    let (charts, followed) = by(pipeline(&p));
+    assert_eq!(charts, "half");
+    let (charts, told) = by(pipeline(&p).triangulation_metric(half()));
+    assert_eq!((charts.as_str(), &told.mesh), ("half", &followed.mesh));
+    let mut straight = p.clone();
+    straight.spaces.tri_metric = Some(MetricName::Euclidean);
+    assert_eq!(by(pipeline(&straight)).0, "places");
 }
 
 /// A model that asks for everything and explains nothing.
@@ -187,4 +306,8 @@ fn the_report_names_what_ran() {
         counts.won + counts.lost + refused,
         "{counts:?}"
     );
+    let names = &outcome.report.plugins;
+    let three = [&names.metric, &names.stratifier, &names.triangulator];
+    assert_eq!(three, ["euclidean", "cells", "advancing-front"]);
+    assert_eq!(names.estimator.as_deref(), Some("pca"));
 }

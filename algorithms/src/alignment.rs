@@ -82,6 +82,7 @@ pub struct Alignment {
 
 /// A conformation in its position.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Aligned {
     /// Its coordinates, x, y, z of atom 0, of atom 1, ..
     pub place: Vec<f64>,
@@ -93,6 +94,7 @@ pub struct Aligned {
 
 /// A set of conformations in their positions.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AlignedCloud {
     /// The conformations.
     pub points: PointCloud<f64>,

@@ -1,12 +1,13 @@
-//! Laws of finished meshes, for the surfaces of users.
+//! Laws of finished meshes, for the surfaces of users, and of producers of waists.
 //!
-//! The laws of traits are in [`crosscap_core::laws`], as are those that need a complex alone; here is
-//! what takes homology and links.
+//! The laws of the traits of the core are in [`crosscap_core::laws`], as are those that need a complex alone; here is
+//! what takes homology and links, and what is about whole clouds.
 
 use crate::certificate::{CertificateOptions, SpecialPoint, certify};
 use crate::homology::homology;
-use crosscap_core::Mesh;
+use crate::stratify::WaistProducer;
 use crosscap_core::laws::{self, Failures, Findings, Law, LawBroken, Settings};
+use crosscap_core::{Mesh, Scalar};
 
 static LINKS: Law = Law {
     subject: "a mesh",
@@ -23,6 +24,72 @@ static UNUSABLE: Law = Law {
     says: "corners are vertices, triangles are different, and no two vertices are at one place",
     look_for: "arrays that were put together by hand: `Complex::new` and `Mesh::new` check them",
 };
+
+const PRODUCER: &str = "WaistProducer";
+
+static ANSWER: Law = Law {
+    subject: PRODUCER,
+    name: "answer",
+    says: "a waist that passes its check, every landmark of which stands for a row of its own",
+    look_for: "a neighborhood without its center in front; a distance of two members that was left out; a row that was \
+               chosen twice, by the selector and as an extra one",
+};
+
+static EXTRA: Law = Law {
+    subject: PRODUCER,
+    name: "extra",
+    says: "a row that is asked for and may be added is a landmark",
+    look_for: "extra rows that are put through the separation again; may_add and waist by different rules",
+};
+
+static INDEPENDENCE: Law = Law {
+    subject: PRODUCER,
+    name: "independence",
+    says: "a waist does not depend on those that were made before",
+    look_for: "landmarks that are kept in a cell of the producer; a generator of random numbers that goes on",
+};
+
+/// Puts a producer of waists of so many `points` through its laws, with up to four rows as extra landmarks.
+///
+/// # Errors
+/// The laws that do not hold; an error of the producer breaks the first.
+pub fn producer<S: Scalar>(
+    settings: &Settings,
+    producer: &dyn WaistProducer<S>,
+    points: usize,
+) -> Result<(), Failures> {
+    let mut found = Findings::new(settings, &[&ANSWER, &EXTRA, &INDEPENDENCE]);
+    let broken = |law: &'static Law, input: &[usize], found: String| LawBroken {
+        law,
+        input: format!("{points} points, extra rows {input:?}"),
+        found,
+        seed: None,
+    };
+    let make = |extra: &[usize]| {
+        let checked = producer.waist(extra).and_then(|waist| {
+            waist.waist.check()?;
+            waist.check("the producer", points)?;
+            Ok(waist)
+        });
+        checked.map_err(|e| broken(&ANSWER, extra, e.to_string()))
+    };
+    let first = make(&[])?;
+    let extra: Vec<usize> = (0..points)
+        .filter(|&row| producer.may_add(row) && !first.rows.contains(&row))
+        .step_by((points / 4).max(1))
+        .collect();
+    let more = make(&extra)?;
+    if let Some(row) = extra.iter().find(|row| !more.rows.contains(row)) {
+        let detail = format!("row {row} is no landmark");
+        found.put(Err(broken(&EXTRA, &extra, detail)));
+    }
+    let again = make(&[])?;
+    if again.rows != first.rows || again.waist != first.waist {
+        let detail = "another waist than before the one with extra rows".to_string();
+        found.put(Err(broken(&INDEPENDENCE, &[], detail)));
+    }
+    found.end()
+}
 
 /// Puts a mesh through the laws that every result obeys: usable indices, Euler-Poincare over Q, Z/2
 /// and Z/3, admissible links (`special` declares the others), and homology that does not depend on
@@ -98,7 +165,11 @@ pub fn surface(settings: &Settings, mesh: &Mesh, special: &[SpecialPoint]) -> Re
 mod tests {
     use super::*;
     use crate::certificate::LinkKind;
-    use crosscap_core::{Complex, PointCloud};
+    use crate::stratify::Stratification;
+    use crosscap_core::{
+        CellNeighborhood, Complex, Error, PointCloud, SparseDistances, StratifiedLandmarks,
+    };
+    use std::sync::Mutex;
 
     /// Two tetrahedra, with a vertex in common or without; `twice` puts two vertices at one place.
     fn tetrahedra(joined: bool, twice: bool) -> Mesh {
@@ -128,6 +199,55 @@ mod tests {
             vec![-1; count],
         )
         .unwrap()
+    }
+
+    /// A waist of four rows of ten in one neighborhood, with what is wrong.
+    struct Four(&'static str, Mutex<Vec<usize>>);
+
+    impl WaistProducer<f64> for Four {
+        fn waist(&self, extra: &[usize]) -> Result<Stratification<f64>, Error> {
+            let mut rows = vec![2, 5, 6, 9];
+            let mut kept = self.1.lock().unwrap();
+            kept.extend(extra);
+            match self.0 {
+                "answer" => rows[1] = 2,
+                "extra" => {}
+                "independence" => rows.extend(kept.iter()),
+                _ => rows.extend(extra),
+            }
+            let members: Vec<u32> = (0..rows.len() as u32).collect();
+            let near = CellNeighborhood { center: 0, members };
+            let waist = StratifiedLandmarks {
+                strata: vec![2; rows.len()],
+                curve_edges: vec![],
+                distances: SparseDistances::within(
+                    rows.len(),
+                    std::slice::from_ref(&near),
+                    |a, b| f64::from(a + b),
+                )?,
+                neighborhoods: vec![near],
+            };
+            Ok(Stratification::new(waist, rows))
+        }
+
+        fn may_add(&self, row: usize) -> bool {
+            row < 10
+        }
+    }
+
+    #[test]
+    fn a_producer_is_caught_by_its_law() {
+        let put = |fault| producer(&Settings::default(), &Four(fault, Mutex::default()), 10);
+        put("none").unwrap();
+        for law in ["answer", "extra", "independence"] {
+            let failures = put(law).unwrap_err();
+            let first = failures.broken().next().unwrap();
+            assert_eq!(
+                (first.law.subject, first.law.name),
+                (PRODUCER, law),
+                "{first}"
+            );
+        }
     }
 
     #[test]

@@ -24,6 +24,8 @@ pub mod principal;
 pub mod scaling;
 pub mod singularity;
 pub mod space;
+mod spectrum;
 pub mod stratify;
 pub mod surfaces;
 pub mod triangulate;
+pub mod tuning;

@@ -282,6 +282,10 @@ impl<S: Scalar> NeighborhoodOracle for EuclideanOracle<S> {
         self.within_row(place, radius, out);
         true
     }
+
+    fn name(&self) -> &str {
+        "search-tree"
+    }
 }
 
 /// Distance, then index, as one number: the bits of nonnegative numbers are in their order.

@@ -48,6 +48,7 @@ pub struct Component {
 
 /// What there is to know about a neighbor graph before trusting its distances.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct GraphReport {
     /// Number of points.
     pub points: usize,
@@ -56,7 +57,7 @@ pub struct GraphReport {
     /// Spacing of the points: the median distance to the nearest point that is not a copy, among
     /// those that have an edge to one.
     pub spacing: f64,
-    /// How far edges reach: the radius of the rule, or the median distance to the last of the
+    /// How far edges reach: the radius of the rule, or the median length of the longest edge to one of the
     /// nearest points.
     pub reach: f64,
     /// The connected components, largest first, then by their smallest point.
@@ -65,6 +66,7 @@ pub struct GraphReport {
 
 /// Why geodesic distances over a graph may mislead.
 #[derive(Clone, Debug, Error, PartialEq, Serialize)]
+#[non_exhaustive]
 pub enum GraphWarning {
     /// Points in different components are at infinite distance.
     #[error(
@@ -173,6 +175,41 @@ impl<S: Scalar> GeodesicMetric<S> {
     /// [`Error::Law`] when the oracle returns an index out of range or a distance that is not at
     /// least 0.
     pub fn new(oracle: &dyn NeighborhoodOracle<Scalar = S>, rule: EdgeRule) -> Result<Self, Error> {
+        Self::with_lengths(oracle, rule, &|_, _, length| length)
+    }
+
+    /// The same edges, each divided by how many times the spacing of the points at its two ends is the usual
+    /// one (the geometric mean of `scale` there): where points lie twice as far apart, lengths count half. On a surface
+    /// sampled unevenly all points are then about as far apart.
+    ///
+    /// Source: conformal Isomap (de Silva and Tenenbaum, "Global versus local methods in nonlinear dimensionality
+    /// reduction", NIPS 2002, section 3.1), with the spacing in the place of the mean distance to the nearest
+    /// points.
+    ///
+    /// # Errors
+    /// Those of [`GeodesicMetric::new`]; [`Error::Shape`] for a scale that has not one positive number a point.
+    pub fn conformal(
+        oracle: &dyn NeighborhoodOracle<Scalar = S>,
+        rule: EdgeRule,
+        scale: &[f64],
+    ) -> Result<Self, Error> {
+        let sound = scale.iter().all(|s| *s > 0.0 && s.is_finite());
+        if scale.len() != oracle.len() || !sound {
+            return Err(Error::Shape {
+                found: format!("a scale of {} numbers", scale.len()),
+                expected: format!("{} positive ones, one a point", oracle.len()),
+            });
+        }
+        let shrunk = |a: usize, b: usize, length: f64| length / (scale[a] * scale[b]).sqrt();
+        Self::with_lengths(oracle, rule, &shrunk)
+    }
+
+    /// A graph whose edges are as long as `length` makes of their ends and what the oracle says.
+    fn with_lengths(
+        oracle: &dyn NeighborhoodOracle<Scalar = S>,
+        rule: EdgeRule,
+        length: &(dyn Fn(usize, usize, f64) -> f64 + Sync),
+    ) -> Result<Self, Error> {
         let len = oracle.len();
         let parameter = |name, value, expected: &str| Error::Parameter {
             name,
@@ -197,7 +234,13 @@ impl<S: Scalar> GeodesicMetric<S> {
         }
         let rows = (0..len)
             .into_par_iter()
-            .map_init(Vec::new, |found, point| row(oracle, rule, point, found))
+            .map_init(Vec::new, |found, point| {
+                let mut edges = row(oracle, rule, point, found)?;
+                for (other, far) in &mut edges {
+                    *far = length(point, *other as usize, *far);
+                }
+                Ok(edges)
+            })
             .collect::<Result<Vec<_>, Error>>()?;
 
         let longest = (rows.iter().flatten()).fold(0.0, |most: f64, e| most.max(e.1));
@@ -448,6 +491,10 @@ impl<S: Scalar> NeighborhoodOracle for GeodesicMetric<S> {
             });
             out.extend(beyond.take(count - out.len()));
         }
+    }
+
+    fn name(&self) -> &str {
+        "graph-search"
     }
 }
 

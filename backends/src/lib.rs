@@ -4,6 +4,7 @@ pub mod euclidean;
 pub mod files;
 pub mod geodesic;
 pub mod interrupt;
+#[cfg(feature = "linear-program")]
 pub mod linear_program;
 pub mod parallel;
 pub mod picture;

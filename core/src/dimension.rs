@@ -1,6 +1,7 @@
 //! How many dimensions a neighborhood has.
 
-use crate::{Error, Neighborhood, Scalar};
+use crate::execute::Execute;
+use crate::{BallDimension, Balls, Error, Neighborhood, Scalar};
 use serde::{Deserialize, Serialize};
 
 /// A local dimension with its evidence.
@@ -17,6 +18,54 @@ pub struct DimensionEstimate {
     pub spectrum: Vec<f64>,
 }
 
+impl DimensionEstimate {
+    /// Whether this can be the answer of an estimator named `plugin` about the ball of so many `neighbors` around
+    /// `point`.
+    ///
+    /// # Errors
+    /// [`Error::Law`] for a value that is not finite or negative, a confidence outside 0 to 1, a dimension
+    /// that is not the value rounded, or more dimensions than the points span.
+    pub fn check(&self, plugin: &str, point: usize, neighbors: usize) -> Result<(), Error> {
+        let Self {
+            dimension,
+            value,
+            confidence,
+            ..
+        } = *self;
+        let broken = |law: &'static str, detail: String| {
+            Err(Error::Law {
+                plugin: plugin.into(),
+                law,
+                point,
+                detail,
+            })
+        };
+        if !(value.is_finite() && value >= 0.0) {
+            let law = "answer: the value is finite and at least 0";
+            return broken(law, format!("{value}"));
+        }
+        if !(0.0..=1.0).contains(&confidence) {
+            let law = "answer: the confidence is between 0 and 1";
+            return broken(law, format!("{confidence}"));
+        }
+        if (value - dimension as f64).abs() > 0.5 + ROUNDING {
+            let law = "rounded: the dimension is the value rounded";
+            return broken(law, format!("dimension {dimension} for the value {value}"));
+        }
+        if dimension >= neighbors.max(1) {
+            let law = "answer: k points span at most k - 1 dimensions";
+            return broken(
+                law,
+                format!("dimension {dimension} from {neighbors} points"),
+            );
+        }
+        Ok(())
+    }
+}
+
+/// A value this far beyond a half may be rounded either way.
+const ROUNDING: f64 = 1e-6;
+
 /// Estimates the dimension of the set that a neighborhood was sampled from.
 ///
 /// # Why it has this shape
@@ -27,11 +76,16 @@ pub struct DimensionEstimate {
 /// fallen either way is treated as such. The radius is part of the neighborhood, because a threshold
 /// that is no share of it would give another answer in another unit.
 ///
+/// The pipeline asks for [all balls of a cloud](Self::estimate_all) at once. Who implements nothing else is asked ball by ball
+/// there; who can share work between balls that overlap, as the default estimator does with moments that it sums in a tree,
+/// overrides that one method, and is held to the answers of the other.
+///
 /// # Laws
 /// - *motion*: the same answer after a rigid motion, within rounding;
 /// - *scale*: the same answer after uniform scaling of data and radius;
 /// - *embedding*: the same answer after an isometric embedding in a larger space;
-/// - *order*: the same answer for any order of the points of the cloud, within rounding.
+/// - *order*: the same answer for any order of the points of the cloud, within rounding;
+/// - *batch*: of all balls together `estimate_all` says what `estimate` says of each, within rounding.
 pub trait DimensionEstimator: Sync {
     /// Type of the coordinates.
     type Scalar: Scalar;
@@ -45,6 +99,21 @@ pub trait DimensionEstimator: Sync {
         &self,
         neighborhood: &Neighborhood<'_, Self::Scalar>,
     ) -> Result<DimensionEstimate, Error>;
+
+    /// The dimensions of the balls about all points of a space, in the order of the points. As it stands every ball is
+    /// asked for on its own.
+    ///
+    /// The answers must be those of [`estimate`](Self::estimate), whatever runs the jobs of `execute`.
+    ///
+    /// # Errors
+    /// Those of `estimate` and [`Balls::one_by_one`].
+    fn estimate_all(
+        &self,
+        balls: &Balls<'_, Self::Scalar>,
+        execute: &dyn Execute,
+    ) -> Result<Vec<BallDimension>, Error> {
+        balls.one_by_one(self.name(), execute, |ball| self.estimate(ball))
+    }
 
     /// The estimate from the variances along the principal directions of a neighborhood, largest first,
     /// for an estimator that reads nothing else: whoever fits a model to a ball has them at hand. As it

@@ -16,8 +16,11 @@
 //! | local coordinates | [`LocalChart`] |
 //! | may two triangles stand side by side | [`CompatibilityTest`], [`TriangleRule`] |
 //! | the narrow waist | [`StratifiedLandmarks`] |
+//! | triangles on landmarks | [`Triangulator`] |
 //! | the result | [`Complex`], [`Mesh`] |
+//! | many jobs at once | [`execute`] |
 
+mod balls;
 mod chart;
 mod cloud;
 mod compatibility;
@@ -25,6 +28,7 @@ mod complex;
 mod dimension;
 mod distances;
 mod error;
+pub mod execute;
 mod landmarks;
 #[cfg(any(test, feature = "laws"))]
 pub mod laws;
@@ -34,8 +38,10 @@ mod neighborhood;
 mod scalar;
 mod singularity;
 mod strata;
+mod triangulation;
 mod waist;
 
+pub use balls::{BallDimension, Balls, Radii};
 pub use chart::{Chart, LocalChart};
 pub use cloud::{PointCloud, squared_distance};
 pub use compatibility::{ChartTriangle, CompatibilityTest, Meeting, TriangleRule};
@@ -50,4 +56,5 @@ pub use neighborhood::{Neighbor, Neighborhood, NeighborhoodOracle};
 pub use scalar::Scalar;
 pub use singularity::{LocalPoints, Rejection, SingularityModel};
 pub use strata::{Contradiction, Decomposition, Located, Stratum};
+pub use triangulation::{Incomplete, Triangulation, TriangulationCounts, Triangulator};
 pub use waist::{CellNeighborhood, StratifiedLandmarks};

@@ -69,6 +69,11 @@ pub trait NeighborhoodOracle: Sync {
         false
     }
 
+    /// Short name for reports: what serves the metric.
+    fn name(&self) -> &str {
+        "neighborhood oracle"
+    }
+
     /// Whether a point is closer to a place than `radius`; `false` where the space has no coordinates.
     fn is_near(&self, place: &[Self::Scalar], radius: Self::Scalar) -> bool {
         let mut near = Vec::new();

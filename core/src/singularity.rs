@@ -65,6 +65,11 @@ pub enum Rejection {
         /// Residual of the simpler one.
         simpler: f64,
     },
+    /// The neighborhood shows the singularity, and not all that is needed of it.
+    NeighborhoodTooSmall {
+        /// Radius about the same center that would do.
+        needed: f64,
+    },
     /// One of the strata holds too few points to be believed.
     EmptyStratum {
         /// Which stratum.
@@ -117,6 +122,13 @@ pub trait SingularityModel: Sync {
     /// that counts the few points of a curve counts all of them. A model that says no is spared rows
     /// whose labels nobody asks for.
     fn looks_behind(&self) -> bool {
+        false
+    }
+
+    /// Whether the model says what is at the end of a curve: it is then asked about balls about the ends of
+    /// double curves, of eps and wider ones, and its labels stand for all points of the ball about the point
+    /// that it finds. Such a model is not asked elsewhere unless [`SingularityModel::applies_to`] says so.
+    fn explains_ends(&self) -> bool {
         false
     }
 

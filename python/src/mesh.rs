@@ -4,7 +4,7 @@ use crate::arrays::{Curves, MeshArrays, cloud, deduced, of_cloud, of_curves, of_
 use crate::refusal::{bad_value, violation};
 use crosscap::command::convert::places_for;
 use crosscap::command::findings::Findings;
-use crosscap::command::picture;
+use crosscap::command::{overlay, picture};
 use crosscap_algorithms::certificate::{CertificateOptions, certify};
 use crosscap_algorithms::homology::homology as homology_of;
 use crosscap_algorithms::isomap::{IsomapOptions, isomap_places};
@@ -102,8 +102,10 @@ pub fn page(
     mesh: MeshArrays<'_>,
     title: String,
     verdict: String,
+    points: Option<PyReadonlyArray2<'_, f64>>,
 ) -> PyResult<String> {
     let mesh = mesh.mesh()?;
+    let points = points.as_ref().map(cloud).transpose()?;
     py.detach(|| -> Result<String, Error> {
         let homology = homology_of(&mesh.complex)?;
         let certificate = certify(&mesh, &CertificateOptions::default());
@@ -114,7 +116,10 @@ pub fn page(
             certificate: &certificate,
             pieces: &pieces,
         };
-        let scene = picture::scene(&title, &findings, &verdict, None)?;
+        let mut scene = picture::scene(&title, &findings, &verdict, None)?;
+        if let Some(points) = &points {
+            overlay::add_points(&mut scene, &mesh, points)?;
+        }
         page_of::page(&scene)
     })
     .map_err(|error| bad_value(&error))

@@ -1,7 +1,7 @@
 //! Points: samples, files, dimensions.
 
 use crate::arrays;
-use crate::refusal::{bad_value, raised};
+use crate::refusal::{bad_value, in_python, raised};
 use crate::run::Run;
 use crosscap::command::estimators::EstimatorName;
 use crosscap_algorithms::dimension::{Scale, WholeCloud};
@@ -75,7 +75,11 @@ pub fn read_points<'py>(
     };
     let file = py.detach(|| files::read_point_file(path, &options));
     let file = file.map_err(|error| bad_value(&error))?;
-    let remarks = file.remarks.iter().map(ToString::to_string).collect();
+    let remarks = file
+        .remarks
+        .iter()
+        .map(|r| in_python(&r.to_string()))
+        .collect();
     Ok((arrays::of_cloud(py, &file.points.into_f64())?, remarks))
 }
 

@@ -7,7 +7,7 @@ use crate::refusal::{self, bad_value};
 use crate::run::Run;
 use crosscap::auto::{Auto, Input, Pinned, Search};
 use crosscap::command::estimators::EstimatorName;
-use crosscap::command::reconstruct::report;
+use crosscap::command::outcome::report;
 use crosscap::refusal::Refusal;
 use crosscap::{MetricName, Outcome, Parameters, Pipeline, Stage};
 use crosscap_algorithms::singularity::ModelName;

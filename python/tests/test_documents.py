@@ -48,3 +48,15 @@ def test_the_stubs_name_what_the_extension_has():
         arguments = list(inspect.signature(function).parameters)
         assert [a.arg for a in named[name].args.args] == arguments, name
     assert Path(crosscap.__file__).with_name("py.typed").exists()
+
+
+def test_the_stubs_are_true():
+    pytest.importorskip("mypy")
+    settings = Path(__file__).parent.parent / "pyproject.toml"
+    asked = [sys.executable, "-m", "mypy.stubtest", "crosscap", "--concise"]
+    told = subprocess.run(
+        [*asked, "--ignore-missing-stub", "--mypy-config-file", str(settings)],
+        capture_output=True,
+        text=True,
+    )
+    assert told.returncode == 0, told.stdout + told.stderr

@@ -79,6 +79,9 @@ def test_a_refusal_says_why_and_keeps_the_mesh(sphere):
     refusal = caught.value
     assert refusal is surface.refusal_ and surface.verdict_ == "refused"
     assert refusal.advice and refusal.advice in str(refusal)
+    # Parameters have the names that they have here.
+    assert "boundary=" in refusal.advice and 'models="auto"' in refusal.advice
+    assert "--" not in str(refusal)
     (attempt,) = refusal.attempts
     assert attempt["parameters"]["eps"] == 0.4
     reason = refusal.reasons[0]

@@ -10,7 +10,10 @@ import pytest
 
 import crosscap
 
+# A process that was started in the background of a script is deaf to Ctrl-C, and so are those that it starts.
 LONG = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)
 import crosscap
 points = crosscap.sample("two-spheres", 200_000, thin=0.005).points
 surface = crosscap.SurfaceReconstruction(eps=0.3, dl=0.05)

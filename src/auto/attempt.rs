@@ -2,12 +2,14 @@
 
 use crate::pipeline::{Outcome, Parameters};
 use crosscap_algorithms::certificate::ViolationKind;
+use crosscap_algorithms::pieces::{Pieces, Reading};
 use crosscap_core::Error;
 use serde::Serialize;
 use std::fmt;
 
 /// One attempt at a reconstruction.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Attempt {
     /// The parameters.
     pub parameters: Parameters,
@@ -20,7 +22,11 @@ pub struct Attempt {
 }
 
 /// What a mesh is up to bending, as far as homology and its pieces tell.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+///
+/// Equal when Betti numbers and the [reading](Pieces::reading) of the pieces are: in words the same surface can be told
+/// in another order, and with other angles.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Topology {
     /// Betti numbers over Q.
     pub betti: [usize; 3],
@@ -28,6 +34,16 @@ pub struct Topology {
     pub betti_mod2: [usize; 3],
     /// The pieces and how they meet, in a sentence; none where they cannot be told apart.
     pub pieces: Option<String>,
+    /// The same without order and measure.
+    #[serde(skip)]
+    reading: Option<Reading>,
+}
+
+impl PartialEq for Topology {
+    fn eq(&self, other: &Self) -> bool {
+        let key = |t: &Self| (t.betti, t.betti_mod2);
+        key(self) == key(other) && self.reading == other.reading
+    }
 }
 
 impl fmt::Display for Topology {
@@ -47,6 +63,7 @@ const FEW_PLACES: usize = 3;
 /// How an attempt ended.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum End {
     /// With a verified mesh.
     Verified(Topology),
@@ -71,6 +88,7 @@ impl End {
                 betti: outcome.homology.betti_rational,
                 betti_mod2: outcome.homology.betti_mod2,
                 pieces: outcome.pieces.as_ref().ok().map(ToString::to_string),
+                reading: outcome.pieces.as_ref().ok().map(Pieces::reading),
             }),
             Ok(outcome) => Self::Refused {
                 open: outcome.failures.len(),

@@ -28,6 +28,7 @@ const NEAR: usize = 15;
 /// All of it is read from the distances of points to their neighbors, so that it does not matter
 /// where the distances come from.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Density {
     /// Number of points.
     pub points: usize,
@@ -109,6 +110,16 @@ impl Density {
             found: "points that nearly all lie at one place".into(),
             expected: "points of a surface".into(),
         })
+    }
+
+    /// The density of points that lie everywhere as they do in the middle of all.
+    pub(super) fn even(&self) -> Self {
+        Self {
+            dense: self.spacing,
+            sparse: self.spacing,
+            reach: self.usual_reach,
+            ..self.clone()
+        }
     }
 
     /// Fewest points that are worked on: what one neighborhood needs.

@@ -9,6 +9,7 @@ mod input;
 mod moves;
 mod pinned;
 mod prepared;
+mod rounded;
 mod rounding;
 mod search;
 mod symptoms;
@@ -20,6 +21,7 @@ pub use density::Density;
 pub use input::Input;
 pub use moves::Move;
 pub use pinned::Pinned;
+pub use rounded::Rounded;
 pub use search::{Choice, Doubt, Search};
 
 use crate::pipeline::{Parameters, Pipeline};

@@ -9,9 +9,10 @@ use crosscap_algorithms::singularity::ModelName;
 use crosscap_backends::geodesic::EdgeRule;
 use serde::Serialize;
 
-/// A change of the parameters of the first attempt.
+/// A change of the parameters of the attempt that came farthest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Move {
     /// Larger neighborhoods, landmarks as they were: no move makes the mesh coarser, as a coarser mesh passes
     /// by seeing less.
@@ -28,7 +29,10 @@ pub enum Move {
     Closed,
     /// The same, of a surface that may end and does not cross itself.
     Ending,
-    /// The same as the first, with other landmarks.
+    /// Every point taken as one of a closed surface that does not cross itself, landmarks and charts by the spacing of the
+    /// points, which varies much.
+    Spaced,
+    /// The same, with other landmarks.
     OtherLandmarks,
 }
 
@@ -43,6 +47,10 @@ const LARGER: f64 = 1.3;
 const SMALLER: f64 = 0.8;
 /// Factor on the separation alone.
 const FINER: f64 = 0.75;
+/// Spacings of one point in a hundred that are this many times those of another one vary more than one separation
+/// suits: landmarks that are near enough where points are dense have none around them where they are sparse. Of
+/// surfaces with densities of 30 to 1 (5 times the spacing) all passed with one separation, of 100 to 1 none.
+const UNEVEN: f64 = 4.0;
 /// Landmarks are at least so many spacings apart: below that a landmark has no points around it.
 const CLOSEST: f64 = 1.3;
 
@@ -61,56 +69,97 @@ impl Move {
             Self::Ending => {
                 "every point taken as one of a surface that may end and does not cross itself, charts by distances along it"
             }
+            Self::Spaced => {
+                "every point taken as one of a closed surface that does not cross itself, all lengths in the spacing of the points"
+            }
             Self::OtherLandmarks => "other landmarks",
         }
     }
 
-    /// The parameters of the first attempt with this change; nothing where what is pinned forbids it
-    /// or the points are too few for it.
+    /// Parameters `from` an earlier attempt with this change; nothing where what is pinned forbids it, the points are
+    /// too few for it, or it changes nothing.
     pub(super) fn apply(
         self,
-        first: &Parameters,
+        from: &Parameters,
         pinned: &Pinned,
         density: &Density,
     ) -> Option<Parameters> {
+        let least = match self {
+            Self::Spaced => density.spacing,
+            _ if from.spaces.metric == MetricName::Conformal => density.spacing,
+            _ => density.dense,
+        };
         match self {
-            Self::Larger => scaled(first, pinned, LARGER, 1.0),
-            Self::Smaller => scaled(first, pinned, SMALLER, SMALLER),
-            Self::Finer => scaled(first, pinned, 1.0, FINER),
-            Self::Local if pinned.neighborhoods.is_none() && !first.surface => Some(Parameters {
+            Self::Larger => scaled(from, pinned, LARGER, 1.0),
+            Self::Smaller => scaled(from, pinned, SMALLER, SMALLER),
+            Self::Finer => scaled(from, pinned, 1.0, FINER),
+            Self::Local if pinned.neighborhoods.is_none() && !from.surface => Some(Parameters {
                 spaces: Spaces {
                     neighborhoods: Neighborhoods::Adaptive(LOCAL),
-                    ..first.spaces.clone()
+                    ..from.spaces.clone()
                 },
-                ..first.clone()
+                ..from.clone()
             }),
-            Self::Unfolded if pinned.tri_metric.is_none() && pinned.metric.is_none() => {
+            Self::Unfolded
+                if pinned.tri_metric.is_none()
+                    && pinned.metric.is_none()
+                    && from.spaces.metric == MetricName::Euclidean =>
+            {
                 Some(Parameters {
                     spaces: Spaces {
                         tri_metric: Some(MetricName::Geodesic),
                         graph: graph(pinned),
-                        ..first.spaces.clone()
+                        ..from.spaces.clone()
                     },
-                    ..first.clone()
+                    ..from.clone()
                 })
             }
-            Self::Closed => one_surface(first, pinned, ModelName::TwoPlanes),
-            Self::Ending => one_surface(first, pinned, ModelName::Boundary),
-            Self::OtherLandmarks => other_landmarks(first, pinned),
+            Self::Closed => one_surface(from, pinned, ModelName::TwoPlanes),
+            Self::Ending => one_surface(from, pinned, ModelName::Boundary),
+            Self::Spaced => spaced(from, pinned, density),
+            Self::OtherLandmarks => other_landmarks(from, pinned, 1),
             _ => None,
         }
-        .filter(|found| found.dl >= CLOSEST * density.dense && found.check().is_ok())
+        .filter(|found| found.dl >= CLOSEST * least && found.check().is_ok() && found != from)
     }
+}
+
+/// Whether every point may be taken as one of a surface, with distances along it.
+fn is_free(pinned: &Pinned) -> bool {
+    pinned.metric.is_none()
+        && pinned.tri_metric.is_none()
+        && pinned.neighborhoods.is_none()
+        && pinned.models.is_none()
+        && pinned.surface != Some(false)
+}
+
+/// The same on one closed surface, lengths in the spacing of the points where that varies much: separations are as many
+/// spacings everywhere as they are where the spacing is the usual one.
+fn spaced(from: &Parameters, pinned: &Pinned, density: &Density) -> Option<Parameters> {
+    let uneven = density.sparse > UNEVEN * density.dense;
+    let lengths = pinned.eps.is_none() && pinned.dl.is_none() && pinned.tri_eps.is_none();
+    let free = is_free(pinned) && lengths && pinned.boundary.is_empty();
+    (uneven && free).then(|| {
+        let eps = three_digits(density.usual_reach);
+        let one = pinned.parameters(eps, pinned.lengths(&density.even()).0[1]);
+        Parameters {
+            seed: from.seed,
+            surface: true,
+            models: vec![ModelName::TwoPlanes],
+            spaces: Spaces {
+                metric: MetricName::Conformal,
+                graph: graph(pinned),
+                ..one.spaces.clone()
+            },
+            ..one
+        }
+    })
 }
 
 /// Every point on one surface, distances along it; of the models only a boundary is looked for.
 fn one_surface(first: &Parameters, pinned: &Pinned, model: ModelName) -> Option<Parameters> {
-    let free = pinned.metric.is_none()
-        && pinned.tri_metric.is_none()
-        && pinned.neighborhoods.is_none()
-        && pinned.models.is_none();
-    let wanted = free && pinned.surface != Some(false);
-    wanted.then(|| Parameters {
+    let along = first.spaces.metric != MetricName::Conformal;
+    (along && is_free(pinned)).then(|| Parameters {
         surface: true,
         models: vec![model],
         spaces: Spaces {
@@ -148,20 +197,21 @@ fn scaled(first: &Parameters, pinned: &Pinned, eps: f64, dl: f64) -> Option<Para
     })
 }
 
-/// The same with other landmarks: another seed, or where that is pinned a separation that is a little smaller.
-pub(super) fn other_landmarks(of: &Parameters, pinned: &Pinned) -> Option<Parameters> {
+/// The same with other landmarks, the so-many-th time from 1: another seed, or where that is pinned a separation that is
+/// a little smaller.
+pub(super) fn other_landmarks(of: &Parameters, pinned: &Pinned, time: usize) -> Option<Parameters> {
     match (pinned.seed, pinned.dl) {
         (None, _) => Some(Parameters {
-            seed: of.seed.wrapping_add(1),
+            seed: of.seed.wrapping_add(time as u64),
             ..of.clone()
         }),
         (Some(_), None) => Some(Parameters {
-            dl: three_digits(OTHER * of.dl),
+            dl: three_digits(OTHER.get(time - 1)? * of.dl),
             ..of.clone()
         }),
         _ => None,
     }
 }
 
-/// Factor on the separation that gives other landmarks and hardly another mesh.
-const OTHER: f64 = 0.95;
+/// Factors on the separation, one time after another, that give other landmarks and hardly another mesh.
+const OTHER: [f64; 5] = [0.95, 0.975, 0.925, 0.9625, 0.9375];

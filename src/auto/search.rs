@@ -8,17 +8,21 @@ use super::Auto;
 use super::attempt::{Attempt, End, Topology};
 use super::density::Density;
 use super::input::Input;
-use super::moves::{Move, other_landmarks};
+use super::moves::other_landmarks;
+use super::pinned::Pinned;
 use super::prepared::Prepared;
+use super::rounded::Rounded;
 use super::symptoms::Symptom;
 use crate::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap_algorithms::prepare::PreparationSummary;
+use crosscap_algorithms::singularity::ModelName;
 use crosscap_core::Error;
 use std::fmt;
 use std::time::{Duration, Instant};
 
 /// What a search for parameters yields.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Search {
     /// How densely the points lie; none where all lengths were pinned.
     pub density: Option<Density>,
@@ -37,11 +41,14 @@ pub struct Search {
 /// Why a verified mesh is not handed over.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Doubt {
     /// Two attempts passed with different topology.
     TwoReadings(Topology, Topology),
     /// One attempt passed after others had failed, and no other one confirmed it.
     Unconfirmed(Topology),
+    /// Coordinates are so coarse that the mesh may be that of their rounding.
+    Rounded(Rounded),
 }
 
 impl fmt::Display for Doubt {
@@ -54,6 +61,7 @@ impl fmt::Display for Doubt {
                 f,
                 "one attempt passed after others had failed, {topology}, and no other confirmed it"
             ),
+            Self::Rounded(rounded) => rounded.fmt(f),
         }
     }
 }
@@ -67,6 +75,7 @@ impl Search {
 
 /// What is chosen from the points, before anything is tried.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Choice {
     /// How densely the points lie; none where all lengths were pinned.
     pub density: Option<Density>,
@@ -78,13 +87,19 @@ pub struct Choice {
 
 /// Other landmarks in a row, where little is wrong.
 const AGAIN: usize = 2;
+/// Attempts in a row that come no farther than an earlier one, after which the search ends where much is wrong.
+const IN_VAIN: usize = 3;
 
 /// A search that is under way.
 struct Progress<'a> {
     auto: &'a Auto,
     prepared: Prepared<'a>,
     density: Option<Density>,
+    /// What is not the program's to choose.
+    pinned: Pinned,
     attempts: Vec<Attempt>,
+    /// What went wrong in each.
+    symptoms: Vec<Option<Symptom>>,
     /// The attempt that came farthest.
     best: Option<(usize, Result<Outcome, Error>)>,
     began: Instant,
@@ -145,20 +160,53 @@ impl Auto {
             auto: self,
             prepared,
             density,
+            pinned: self.pinned().clone(),
             attempts: Vec::new(),
+            symptoms: Vec::new(),
             best: None,
             began: Instant::now(),
         };
-        let symptom = progress.attempt(first.clone(), reason, make)?;
-        let doubt = match symptom {
-            Some(symptom) => progress.further(&first, symptom, make)?,
-            None => None,
+        let symptom = match progress.attempt(first.clone(), reason.clone(), make) {
+            Err(Error::Parameter {
+                name: "surface", ..
+            }) if self.pinned.surface.is_none() => progress.without_places(first, reason, make)?,
+            ended => ended?,
+        };
+        // Nothing that is tried mends the coordinates.
+        let doubt = match (Rounded::of(&input), symptom) {
+            (Some(rounded), _) => Some(Doubt::Rounded(rounded)),
+            (None, Some(_)) => progress.further(make)?,
+            (None, None) => None,
         };
         progress.end(doubt)
     }
 }
 
 impl Progress<'_> {
+    /// The first attempt at distances that are those of no places: every point is one of a surface, and no metric is
+    /// tried but the one that is given.
+    fn without_places(
+        &mut self,
+        first: Parameters,
+        reason: String,
+        make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
+    ) -> Result<Option<Symptom>, Error> {
+        let spaces = first.spaces.clone();
+        self.pinned.surface = Some(true);
+        self.pinned.models.get_or_insert(vec![ModelName::TwoPlanes]);
+        self.pinned.metric = Some(spaces.metric);
+        self.pinned.tri_metric = Some(spaces.charts());
+        self.pinned.neighborhoods = Some(spaces.neighborhoods);
+        let first = Parameters {
+            spaces,
+            ..self.pinned.parameters(first.eps, first.dl)
+        };
+        let reason = format!(
+            "{reason}; curves are not looked for, as these distances are those of no places"
+        );
+        self.attempt(first, reason, make)
+    }
+
     /// One attempt; what went wrong, where it is not verified.
     fn attempt(
         &mut self,
@@ -183,6 +231,7 @@ impl Progress<'_> {
         if self.best.as_ref().is_none_or(nearer) {
             self.best = Some((self.attempts.len(), outcome));
         }
+        self.symptoms.push(symptom);
         self.attempts.push(Attempt {
             parameters,
             reason,
@@ -198,59 +247,76 @@ impl Progress<'_> {
         self.attempts.len() < self.auto.tries && self.auto.time_limit.is_none_or(in_time)
     }
 
-    /// The parameters of the last attempt, where it nearly passed and the one before was another kind.
-    fn nearly(&self) -> Option<&Parameters> {
-        let last = self
-            .attempts
-            .last()
-            .filter(|last| last.end.is_near_miss())?;
-        let again = |before: &&Attempt| {
-            before.parameters.spaces == last.parameters.spaces && before.end.is_near_miss()
+    /// Other landmarks for the attempt that came farthest, where it nearly passed and they were not tried so often yet.
+    fn nearly(&self) -> Option<Parameters> {
+        let farthest = self.best.as_ref()?.0;
+        let near = (self.attempts.get(farthest)).filter(|attempt| attempt.end.is_near_miss())?;
+        let of = &near.parameters;
+        let alike = |other: &&Attempt| {
+            let other = &other.parameters;
+            other.spaces == of.spaces && other.models == of.models && other.surface == of.surface
         };
-        let alike = self.attempts.iter().rev().skip(1).take_while(again).count();
-        (alike < AGAIN).then_some(&last.parameters)
+        let times = self.attempts.iter().filter(alike).count();
+        // The first time there is nothing alike but the attempt itself.
+        if times > AGAIN {
+            return None;
+        }
+        let fresh = |next: &Parameters| self.attempts.iter().all(|a| a.parameters != *next);
+        (times..=times + 1).find_map(|time| other_landmarks(of, &self.pinned, time).filter(fresh))
     }
 
-    /// The attempts after the first one failed with a symptom, until two agree or the budget is spent.
+    /// What to try next and why: other landmarks where little is wrong, and otherwise a change of the attempt that came
+    /// farthest, or of the first, that was not tried yet.
+    fn next(&self, density: &Density) -> Option<(Parameters, &'static str)> {
+        let pinned = &self.pinned;
+        if let Some(next) = self.nearly() {
+            return Some((next, "other landmarks, as little is wrong"));
+        }
+        let farthest = self.best.as_ref().map_or(0, |best| best.0);
+        [farthest, 0].into_iter().find_map(|index| {
+            let from = &self.attempts[index].parameters;
+            let moves = self.symptoms[index].map_or(&[][..], Symptom::moves);
+            let fresh = |next: &Parameters| self.attempts.iter().all(|a| a.parameters != *next);
+            moves.iter().find_map(|step| {
+                let next = step.apply(from, pinned, density).filter(fresh)?;
+                Some((next, step.reason()))
+            })
+        })
+    }
+
+    /// Whether further attempts are in vain: the last ones came no farther than one before them, and much is wrong
+    /// with that.
+    fn is_hopeless(&self) -> bool {
+        let farthest = self.best.as_ref().map_or(0, |best| best.0);
+        let since = self.attempts.len() - 1 - farthest;
+        since >= IN_VAIN && !self.attempts[farthest].end.is_near_miss()
+    }
+
+    /// The attempts after the first one failed, until two agree, further ones are in vain or the budget is spent.
     fn further(
         &mut self,
-        first: &Parameters,
-        mut symptom: Symptom,
         make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
     ) -> Result<Option<Doubt>, Error> {
         let Some(density) = self.density.clone() else {
             return Ok(None);
         };
-        let mut tried: Vec<Move> = Vec::new();
         let mut passed: Option<(Topology, Parameters)> = None;
+        let mut confirmations = 0;
         while self.may_go_on() {
-            let pinned = self.auto.pinned();
-            let (next, reason) = if let Some((_, parameters)) = &passed {
-                let Some(next) = other_landmarks(parameters, pinned) else {
-                    break;
-                };
-                (
-                    next,
-                    "other landmarks, to confirm the one that passed".to_string(),
-                )
-            } else if let Some(next) = self.nearly().and_then(|near| other_landmarks(near, pinned))
-            {
-                let reason = "other landmarks, as little is wrong";
-                (next, reason.to_string())
-            } else {
-                let fresh = symptom.moves().iter().filter(|m| !tried.contains(m));
-                let applied = fresh.map(|m| (*m, m.apply(first, pinned, &density)));
-                let Some((step, next)) = applied.filter_map(|(m, p)| Some((m, p?))).next() else {
-                    break;
-                };
-                tried.push(step);
-                (next, step.reason().to_string())
+            confirmations += usize::from(passed.is_some());
+            let next = match &passed {
+                Some((_, parameters)) => other_landmarks(parameters, &self.pinned, confirmations)
+                    .map(|next| (next, "other landmarks, to confirm the one that passed")),
+                None if self.is_hopeless() => None,
+                None => self.next(&density),
+            };
+            let Some((next, reason)) = next else {
+                break;
             };
             let parameters = next.clone();
-            match self.attempt(next, reason, make)? {
-                Some(found) if passed.is_none() => symptom = found,
-                // Other landmarks again.
-                Some(_) => passed = passed.map(|(topology, _)| (topology, parameters)),
+            match self.attempt(next, reason.into(), make)? {
+                // Something else, or where one has passed other landmarks again.
+                Some(_) => {}
                 None => {
                     let now = self.attempts.last().and_then(|a| a.end.topology().cloned());
                     match (passed.take(), now) {

@@ -20,6 +20,10 @@ pub(super) enum Symptom {
     Ends,
     /// Stars stay open.
     Open,
+    /// The mesh, or a curve of its own, covers gaps of the points, or a curve has too few landmarks.
+    Gaps,
+    /// Two sheets of points are one in the mesh.
+    Merged,
     /// Mesh and points are not near each other.
     Cover,
 }
@@ -44,13 +48,22 @@ impl Symptom {
         });
         if outcome.report.curve_points >= SOME && (at_curves || !outcome.failures.is_empty()) {
             Self::Curves
-        } else if found(&|v| v.kind.level() == Level::Geometry) {
+        } else if found(&|v| v.kind.level() == Level::Geometry && v.kind != ViolationKind::BareFold)
+        {
             Self::Folds
         } else if !outcome.failures.is_empty() {
             Self::Open
         } else if found(&|v| v.kind.level() == Level::Edges) {
             Self::Ends
+        } else if found(&|v| {
+            use ViolationKind::*;
+            matches!(v.kind, BridgedGap | BareStretch | BareFold)
+        }) {
+            Self::Gaps
+        } else if found(&|v| v.kind == ViolationKind::MergedSheets) {
+            Self::Merged
         } else {
+            // Vertices off their points are badly placed landmarks, too.
             Self::Cover
         }
     }
@@ -59,12 +72,25 @@ impl Symptom {
     pub(super) fn moves(self) -> &'static [Move] {
         use Move::*;
         match self {
-            Self::Sparse => &[Larger, Local, Closed, Ending],
-            Self::Unexplained => &[Closed, Ending, Smaller, Local],
-            Self::Curves => &[Closed, Ending, Smaller, Local, Finer, Unfolded],
-            Self::Folds | Self::Open => &[Unfolded, Closed, Smaller, Ending, Local, Finer],
-            Self::Ends => &[Ending, Closed, Smaller, Unfolded],
-            Self::Cover => &[OtherLandmarks, Smaller, Closed, Ending, Unfolded, Local],
+            Self::Sparse => &[Spaced, Larger, Local, Closed, Ending],
+            Self::Unexplained => &[Spaced, Closed, Ending, Smaller, Local],
+            Self::Curves => &[Spaced, Closed, Ending, Smaller, Local, Finer, Unfolded],
+            Self::Folds | Self::Open => &[Spaced, Unfolded, Closed, Smaller, Ending, Local, Finer],
+            Self::Ends => &[Ending, Spaced, Closed, Smaller, Unfolded],
+            // A gap stays open where landmarks are nearer to each other than it is wide, if the mesh may end there.
+            Self::Gaps => &[Finer, Ending, Spaced, Smaller],
+            // Paths along the surface do not lead from one sheet to the other.
+            Self::Merged => &[Closed, Ending, Finer, Unfolded, Smaller],
+            Self::Cover => &[
+                Spaced,
+                OtherLandmarks,
+                Closed,
+                Finer,
+                Smaller,
+                Ending,
+                Unfolded,
+                Local,
+            ],
         }
     }
 }

@@ -1,7 +1,8 @@
-use super::{Auto, Doubt, Input};
+use super::{Auto, Doubt, Input, Move, Pinned};
 use crate::pipeline::{Parameters, Pipeline};
 use crate::refusal::{Advice, FaultKind};
-use crosscap_algorithms::surfaces::{SampleSurface, Sampling};
+use crosscap_algorithms::surfaces::{Random, SampleSurface, Sampling};
+use crosscap_backends::files::Distances;
 use crosscap_core::{Error, PointCloud};
 
 fn sample(name: &str, count: usize) -> PointCloud<f64> {
@@ -57,8 +58,12 @@ fn what_passes_after_a_failure_is_not_handed_over_unconfirmed() {
     assert!(matches!(search.doubt, Some(Doubt::Unconfirmed(_))));
     assert!(!search.is_verified());
     let refusal = search.into_verified(Some(&cloud)).unwrap_err();
-    assert_eq!(refusal.faults[0].kind, FaultKind::TwoReadings);
+    assert_eq!(refusal.faults[0].kind, FaultKind::Unconfirmed);
     assert_eq!(refusal.attempts.len(), 2);
+    assert!(matches!(refusal.advice, Advice::MoreTries));
+    let more = Auto::default().tries(3);
+    let search = more.search(Input::Points(&cloud), &mut spoiled()).unwrap();
+    assert!(search.is_verified());
 }
 
 #[test]
@@ -102,4 +107,122 @@ fn too_few_points_are_told_with_a_number_that_does() {
     let search = Parameters::auto().reconstruct(&more).unwrap();
     let outcome = search.into_verified(Some(&more)).unwrap();
     assert_eq!(outcome.homology.betti_rational, [1, 2, 1]);
+}
+
+#[test]
+fn coordinates_without_digits_are_told_and_with_them_it_is_verified() {
+    let plain = sample("sphere", 3000);
+    let far = |x: &f64, axis: usize| x + if axis == 0 { 4e6 } else { 0.0 };
+    let rounded = |&x: &f64| f64::from(x as f32);
+    let moved: Vec<f64> = (plain.coordinates().iter().enumerate())
+        .map(|(k, x)| far(x, k % 3))
+        .collect();
+    let coarse = PointCloud::new(3, moved.iter().map(rounded).collect()).unwrap();
+    let search = Parameters::auto().reconstruct(&coarse).unwrap();
+    let refusal = search.into_verified(Some(&coarse)).unwrap_err();
+    assert_eq!(refusal.faults[0].kind, FaultKind::Precision, "{refusal}");
+    assert!(matches!(refusal.advice, Advice::MoreDigits));
+    // As advised: the offset off before rounding, or no rounding.
+    let near = PointCloud::new(3, plain.coordinates().iter().map(rounded).collect()).unwrap();
+    for cloud in [near, PointCloud::new(3, moved).unwrap()] {
+        let search = Parameters::auto().reconstruct(&cloud).unwrap();
+        assert_eq!(search.attempts.len(), 1);
+        let outcome = search.into_verified(Some(&cloud)).unwrap();
+        assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
+    }
+}
+
+#[test]
+fn points_that_fill_a_space_are_told_and_without_the_column_it_is_verified() {
+    let mut random = Random::new(7);
+    let rows = (0..3000).flat_map(|_| [(); 3].map(|()| random.uniform()));
+    let solid = PointCloud::new(3, rows.collect()).unwrap();
+    let search = Parameters::auto().tries(2).reconstruct(&solid).unwrap();
+    let refusal = search.into_verified(Some(&solid)).unwrap_err();
+    assert_eq!(refusal.faults[0].kind, FaultKind::Dimension, "{refusal}");
+    assert!(matches!(refusal.advice, Advice::FewerDimensions));
+    let plane = solid.iter().flat_map(|row| [row[0], row[1]]).collect();
+    let plane = PointCloud::new(2, plane).unwrap();
+    let search = Parameters::auto().reconstruct(&plane).unwrap();
+    let outcome = search.into_verified(Some(&plane)).unwrap();
+    assert_eq!(outcome.homology.betti_rational, [1, 0, 0]);
+}
+
+/// Points of a sphere, a hundred times as dense at one pole as at the other.
+fn uneven_sphere() -> PointCloud<f64> {
+    let dense = sample("sphere", 100_000);
+    let mut random = Random::new(3);
+    let kept = dense.iter().filter(|row| {
+        let share = (row[0] + 1.0) / 2.0;
+        random.uniform() < 0.3 * 100_f64.powf(-share)
+    });
+    PointCloud::new(3, kept.flatten().copied().collect()).unwrap()
+}
+
+#[test]
+fn a_density_that_varies_a_hundredfold_is_followed() {
+    let cloud = uneven_sphere();
+    let search = Parameters::auto().reconstruct(&cloud).unwrap();
+    let outcome = search.into_verified(Some(&cloud)).unwrap();
+    assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
+}
+
+#[test]
+fn in_the_spacing_of_the_points_landmarks_are_near_where_points_are() {
+    let cloud = uneven_sphere();
+    let choice = Parameters::auto().choose(Input::Points(&cloud)).unwrap();
+    let density = choice.density.unwrap();
+    let spaced = Move::Spaced.apply(&choice.parameters, &Pinned::default(), &density);
+    let parameters = spaced.expect("the density varies");
+    assert!(parameters.dl < choice.parameters.dl);
+    let outcome = Pipeline::new(parameters)
+        .unwrap()
+        .reconstruct(&cloud)
+        .unwrap();
+    assert!(outcome.is_verified(), "{}", outcome.certificate);
+    assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
+    let mesh = outcome.into_verified().unwrap();
+    let lengths = mesh.complex.triangles.iter().map(|t| {
+        let [a, b] = [t[0], t[1]].map(|v| mesh.vertices.point(v as usize));
+        (a[0], crosscap_core::squared_distance(a, b).sqrt())
+    });
+    let mean = |side: f64| {
+        let some: Vec<f64> = (lengths.clone().filter(|x| side * x.0 > 0.7))
+            .map(|x| x.1)
+            .collect();
+        some.iter().sum::<f64>() / some.len() as f64
+    };
+    // The spacings at the caps are seven and a half times each other.
+    assert!(mean(1.0) > 3.0 * mean(-1.0), "{} {}", mean(1.0), mean(-1.0));
+}
+
+#[test]
+fn what_does_not_vary_is_not_measured_in_its_spacing() {
+    let cloud = sample("sphere", 2000);
+    let choice = Parameters::auto().choose(Input::Points(&cloud)).unwrap();
+    let density = choice.density.unwrap();
+    let spaced = Move::Spaced.apply(&choice.parameters, &Pinned::default(), &density);
+    assert!(spaced.is_none());
+}
+
+#[test]
+fn distances_of_no_places_need_nothing_more() {
+    let sphere = sample("sphere", 900);
+    let n = sphere.len();
+    let arc = |k: usize| {
+        let [p, q] = [sphere.point(k / n), sphere.point(k % n)];
+        let cosine: f64 = p.iter().zip(q).map(|(a, b)| a * b).sum();
+        cosine.clamp(-1.0, 1.0).acos()
+    };
+    let values = (0..n * n).map(|k| if k / n == k % n { 0.0 } else { arc(k) });
+    let distances = Distances::Dense {
+        count: n,
+        values: values.collect(),
+    };
+    let search = Parameters::auto()
+        .reconstruct_distances(&distances)
+        .unwrap();
+    let outcome = search.into_verified(None).unwrap();
+    assert!(outcome.report.parameters.surface);
+    assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
 }

@@ -7,15 +7,15 @@ use super::output;
 use super::points::PointArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
-use crosscap_algorithms::certificate::{CertificateOptions, certify};
+use crosscap_algorithms::certificate::{CertificateOptions, SpecialPoint, certify};
 use crosscap_algorithms::homology::{LocalHomology, homology, local_homology};
-use crosscap_algorithms::pieces::pieces;
+use crosscap_algorithms::pieces::{Pieces, pieces};
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::files::{MESH_EXTENSIONS, MeshExtras, read_mesh, write_mesh};
 use crosscap_backends::parallel::Threads;
-use crosscap_core::Mesh;
+use crosscap_core::{Mesh, PointCloud};
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "Betti numbers are no acceptance test: a folded mesh can have the right ones. A mesh is verified when
 every edge has the triangles it should have, every vertex looks like a point of a surface that may cross itself, nothing
@@ -83,24 +83,12 @@ impl Check {
         }
         let file = read_mesh(&self.mesh)?;
         let mesh = &file.mesh;
-        let points = match &self.points {
-            Some(path) => Some(self.choice.read(path)?.into_f64()),
-            None => None,
-        };
-        if let (Some(points), Some(path)) = (&points, &self.points)
-            && points.dimension() != mesh.vertices.dimension()
-        {
-            return Err(Failure::usage(format!(
-                "{}: found points in R^{}, expected R^{}, as {} is",
-                path.display(),
-                points.dimension(),
-                mesh.vertices.dimension(),
-                self.mesh.display()
-            )));
-        }
+        let points = self.cloud(mesh)?;
         let progress = Progress::new("checking");
         let known = file.extras.metadata.get("dl").and_then(Value::as_f64);
+        let special_points = self.declared(&file.extras.metadata)?;
         let options = CertificateOptions {
+            special_points: &special_points,
             points: points.as_ref(),
             landmark_separation: self.dl.or(known.filter(|&dl| dl > 0.0)),
             closed: self.closed,
@@ -114,12 +102,6 @@ impl Check {
         let certificate = certify(mesh, &options);
         let pieces = pieces(mesh);
         drop(progress);
-        let findings = Findings {
-            mesh,
-            homology: &homology,
-            certificate: &certificate,
-            pieces: &pieces,
-        };
         if let Some(path) = &self.normalization {
             let pieces = pieces.as_ref().map_err(|error| {
                 Failure::NotVerified(format!(
@@ -127,47 +109,79 @@ impl Check {
                     self.mesh.display()
                 ))
             })?;
-            let labels = pieces.original_triangle.iter();
-            let extras = MeshExtras {
-                metadata: json!({ "crosscap": env!("CARGO_PKG_VERSION"), "normalization": true }),
-                pieces: Some(
-                    labels
-                        .map(|&t| pieces.triangle_piece[t as usize].into())
-                        .collect(),
-                ),
-            };
-            let places = super::convert::places_for(path, &pieces.normalization, None)?;
-            write_mesh(path, &pieces.normalization, &extras, places.as_ref())?;
+            write_normalization(path, pieces)?;
         }
-        let sound = local.as_ref().is_none_or(|local| local.failures.is_empty());
-        let verified = certificate.verdict().is_verified() && sound;
+        self.tell(
+            &Findings {
+                mesh,
+                homology: &homology,
+                certificate: &certificate,
+                pieces: &pieces,
+            },
+            local.as_ref(),
+        )
+    }
+
+    /// The points that the mesh was made from, in the space that it is in.
+    fn cloud(&self, mesh: &Mesh) -> Result<Option<PointCloud<f64>>, Failure> {
+        let Some(path) = &self.points else {
+            return Ok(None);
+        };
+        let points = self.choice.read(path)?.into_f64();
+        if points.dimension() != mesh.vertices.dimension() {
+            return Err(Failure::usage(format!(
+                "{}: found points in R^{}, expected R^{}, as {} is",
+                path.display(),
+                points.dimension(),
+                mesh.vertices.dimension(),
+                self.mesh.display()
+            )));
+        }
+        Ok(Some(points))
+    }
+
+    /// Prints what was found, and fails where it is not verified.
+    fn tell(&self, findings: &Findings<'_>, local: Option<&LocalHomology>) -> Result<(), Failure> {
+        let sound = local.is_none_or(|local| local.failures.is_empty());
+        let verified = findings.certificate.verdict().is_verified() && sound;
         if self.json {
             let mut all = findings.json(verified);
-            if let Some(local) = &local {
+            if let Some(local) = local {
                 all.insert("local".into(), json!(local));
             }
             all.insert("crosscap".into(), json!(env!("CARGO_PKG_VERSION")));
             all.insert("file".into(), json!(self.mesh.display().to_string()));
             say(pretty(&Value::Object(all)).trim_end())?;
         } else {
-            if let Some(local) = &local {
-                say(told(local, mesh))?;
+            if let Some(local) = local {
+                say(told(local, findings.mesh))?;
             }
             say(findings.lines())?;
         }
         if verified {
-            Ok(())
-        } else {
-            Err(Failure::NotVerified(format!(
-                "{}: not verified{}",
-                self.mesh.display(),
-                if sound {
-                    ""
-                } else {
-                    ": there are neighborhoods that are not contractible"
-                }
-            )))
+            return Ok(());
         }
+        let why = match sound {
+            true => "",
+            false => ": there are neighborhoods that are not contractible",
+        };
+        Err(Failure::NotVerified(format!(
+            "{}: not verified{why}",
+            self.mesh.display()
+        )))
+    }
+
+    /// The points that the mesh declares, as it declares which edges are on curves.
+    fn declared(&self, metadata: &Value) -> Result<Vec<SpecialPoint>, Failure> {
+        let Some(all) = metadata.get("special_points") else {
+            return Ok(Vec::new());
+        };
+        serde_json::from_value(all.clone()).map_err(|error| {
+            Failure::usage(format!(
+                "{}: its special points, vertices with the link that each must have, cannot be read: {error}",
+                self.mesh.display()
+            ))
+        })
     }
 
     fn local_check(&self, mesh: &Mesh, metadata: &Value) -> Result<LocalHomology, Failure> {
@@ -198,6 +212,22 @@ impl Check {
             &Threads::new(0)?,
         )?)
     }
+}
+
+/// Writes the surface with its crossings taken apart.
+fn write_normalization(path: &Path, pieces: &Pieces) -> Result<(), Failure> {
+    let labels = pieces.original_triangle.iter();
+    let extras = MeshExtras {
+        metadata: json!({ "crosscap": env!("CARGO_PKG_VERSION"), "normalization": true }),
+        pieces: Some(
+            labels
+                .map(|&t| pieces.triangle_piece[t as usize].into())
+                .collect(),
+        ),
+    };
+    let places = super::convert::places_for(path, &pieces.normalization, None)?;
+    write_mesh(path, &pieces.normalization, &extras, places.as_ref())?;
+    Ok(())
 }
 
 /// The local check in a line or two.

@@ -1,9 +1,9 @@
 //! `crosscap compare`: which metric, and up to which radius.
 
-use super::compare_plot::{Lane, STYLE, escaped, svg, word};
+use super::compare_plot::svg;
+use super::compare_table::Table;
 use super::failure::Failure;
-use super::findings::pretty;
-use super::number::{betti, counted, positive, share};
+use super::number::{counted, positive, share};
 use super::output;
 use super::parameters::{DIMENSION_TOLERANCE, MethodName, threads};
 use super::points::PointArguments;
@@ -11,14 +11,11 @@ use super::spaces::GraphArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
 use crosscap::auto::Input;
-use crosscap::comparison::{ComparedRun, Comparison, Contender, RunState, compare};
+use crosscap::comparison::{ComparedRun, Comparison, Contender, compare};
 use crosscap::{MetricName, Parameters};
 use crosscap_backends::files::{read_indices, write_bytes_whole};
 use crosscap_backends::geodesic::EdgeRule;
-use serde::{Deserialize, Serialize};
-use serde_json::json;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "Every metric is used for the analysis and for the charts, at every radius; the radius is that of the neighborhoods and
@@ -46,8 +43,8 @@ const USUAL_STEPS: usize = 8;
 #[derive(Args, Debug)]
 #[command(after_long_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Compare {
-    /// Points, one a row: .npy, .npz, .csv, .tsv, .txt, .xyz, .pts, .pdb, .ply, .pcd, .las, .off, .obj, .stl, .vtk, .vtu,
-    /// .vtp, .mat; .gz of any; or a .json of this command
+    /// Points, one a row: .npy, .npz, .csv, .tsv, .txt, .xyz, .pts, .pdb, .xtc, .dcd, .ply, .pcd, .las, .laz, .off,
+    /// .obj, .stl, .vtk, .vtu, .vtp, .mat; .gz of any; or a .json of this command
     #[arg(value_name = "POINTS")]
     points: PathBuf,
 
@@ -127,29 +124,6 @@ pub struct Compare {
 #[derive(Clone, Debug, PartialEq)]
 struct Radii(Vec<f64>);
 
-/// A comparison that was made, with what it was made from.
-#[derive(Serialize, Deserialize)]
-struct Table {
-    crosscap: String,
-    /// Name of the file, without folder and extension.
-    title: String,
-    points: usize,
-    dimension: usize,
-    comparison: Comparison,
-    dl: f64,
-    dt: f64,
-    seed: u64,
-    surface: bool,
-    method: String,
-    /// Edges of the graph of geodesic distances, in words.
-    graph: String,
-    /// Weight of the lifted metric, in words.
-    lift: String,
-    /// By metric, the first and the last radius of every interval in which it works.
-    works: BTreeMap<String, Vec<[f64; 2]>>,
-    runs: Vec<ComparedRun>,
-}
-
 impl Compare {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Failure> {
@@ -227,39 +201,9 @@ impl Compare {
                     .dl
             }
         };
-        let radii = match &self.eps {
-            Some(radii) => radii.0.clone(),
-            None => steps(USUAL[0] * dl, USUAL[1] * dl, USUAL_STEPS),
-        };
-        let mut metrics: Vec<MetricName> = Vec::new();
-        for &metric in &self.metrics {
-            if !metrics.contains(&metric) {
-                metrics.push(metric);
-            }
-        }
-        let contenders: Vec<Contender<'_>> = metrics.into_iter().map(Contender::named).collect();
-        let comparison = Comparison {
-            radii,
-            analysis_eps: self.analysis_eps,
-            dp: self.dp,
-            ep: self.ep,
-            betti: self.betti,
-        };
-        let boundary = match &self.boundary {
-            Some(path) => read_indices(path)?,
-            None => Vec::new(),
-        };
-        let base = Parameters {
-            dt: self.dt,
-            seed: self.seed,
-            surface: self.surface,
-            boundary,
-            method: self.method.into(),
-            spaces: self.graph.spaces(),
-            threads: threads(self.threads),
-            ..Parameters::new(comparison.radii[0], dl)
-        };
-        base.spaces.check()?;
+        let comparison = self.comparison(dl);
+        let base = self.base(comparison.radii[0], dl)?;
+        let contenders = self.contenders();
         let count = contenders.len() * comparison.radii.len();
         let progress = Progress::of(count as u64, "runs");
         let done = || progress.step();
@@ -290,158 +234,53 @@ impl Compare {
             .collect();
         Ok(table)
     }
-}
 
-impl Table {
-    fn lanes(&self) -> Vec<Lane<'_>> {
-        (self.runs.chunks(self.comparison.radii.len()))
-            .map(|runs| Lane {
-                name: runs[0].metric.to_string(),
-                runs,
-            })
-            .collect()
+    /// The metrics, each once.
+    fn contenders(&self) -> Vec<Contender<'static>> {
+        let mut metrics: Vec<MetricName> = Vec::new();
+        for &metric in &self.metrics {
+            if !metrics.contains(&metric) {
+                metrics.push(metric);
+            }
+        }
+        metrics.into_iter().map(Contender::named).collect()
     }
 
-    /// What was compared, in lines of name and value.
-    fn facts(&self) -> Vec<(&'static str, String)> {
-        let mut facts = vec![
-            ("points", format!("{} in R^{}", self.points, self.dimension)),
-            ("landmark separation dl", self.dl.to_string()),
-            (
-                "eps is the radius of",
-                match self.comparison.analysis_eps {
-                    _ if self.surface => "the charts (no curve is looked for)".into(),
-                    Some(eps) => format!("the charts (neighborhoods: {eps})"),
-                    None => "neighborhoods and charts".into(),
-                },
-            ),
-            ("method", self.method.clone()),
-            ("geodesic graph", self.graph.clone()),
-            ("lifted weight", self.lift.clone()),
-            ("seed", self.seed.to_string()),
-        ];
-        if let Some(known) = self.comparison.betti {
-            facts.push(("known Betti numbers", betti(known)));
-        }
-        facts
-    }
-
-    fn page(&self, lanes: &[Lane<'_>]) -> String {
-        let title = escaped(&self.title);
-        let mut out = format!(
-            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-             content=\"width=device-width\">\n<title>{title}: metrics compared</title>\n<style>{PAGE}{STYLE}</style>\n\
-             </head>\n<body>\n<h1>{title}: metrics compared</h1>\n<ul>\n"
-        );
-        // Writing to a string cannot fail.
-        for lane in lanes {
-            let (name, told) = (escaped(&lane.name), lane.told());
-            let _ = writeln!(out, "<li><b>{name}</b> works {told}</li>");
-        }
-        let _ = writeln!(
-            out,
-            "</ul>\n<div class=\"wide\">{}</div>",
-            svg(lanes, false)
-        );
-        out.push_str("<table class=\"facts\">\n");
-        for (name, value) in self.facts() {
-            let _ = writeln!(out, "<tr><th>{name}</th><td>{}</td></tr>", escaped(&value));
-        }
-        out.push_str(
-            "</table>\n<div class=\"wide\"><table>\n<tr><th>metric</th><th>eps</th><th>mesh</th><th>Betti numbers over \
-             Q</th><th>over Z/2</th><th>vertices</th><th>charts lose, mean</th><th>at most</th><th>seconds</th>\
-             <th>reason</th></tr>\n",
-        );
-        let numbers = |b: Option<[usize; 3]>| b.map_or(String::new(), betti);
-        let percent =
-            |share: Option<f64>| share.map_or(String::new(), |s| format!("{:.2} %", 100.0 * s));
-        for (k, run) in self.runs.iter().enumerate() {
-            let _ = writeln!(
-                out,
-                "<tr><td class=\"m{}\">{}</td><td>{}</td><td class=\"{}\">{}</td><td>{}</td><td>{}</td><td>{}</td>\
-                 <td>{}</td><td>{}</td><td>{}</td><td class=\"reason\">{}</td></tr>",
-                k / self.comparison.radii.len() % 3,
-                run.metric,
-                run.eps,
-                if run.works() { "works" } else { "not" },
-                word(run.state),
-                numbers(run.betti),
-                numbers(run.betti_mod_2),
-                run.vertices.map_or(String::new(), |v| v.to_string()),
-                percent(run.distortion.map(|d| d.mean)),
-                percent(run.distortion.map(|d| d.max)),
-                run.seconds.map_or(String::new(), |s| format!("{s:.1}")),
-                escaped(run.reason.as_deref().unwrap_or("")),
-            );
-        }
-        out.push_str("</table></div>\n</body>\n</html>\n");
-        out
-    }
-
-    fn csv(&self, times: bool) -> String {
-        let mut out = String::from(
-            "metric,eps,state,b0,b1,b2,b0_mod_2,b1_mod_2,b2_mod_2,vertices,triangles,distortion_mean,distortion_max",
-        );
-        out.push_str(if times {
-            ",seconds,reason\n"
-        } else {
-            ",reason\n"
-        });
-        let three = |b: Option<[usize; 3]>| match b {
-            Some([a, b, c]) => format!("{a},{b},{c}"),
-            None => ",,".into(),
+    /// What is varied, and what is known.
+    fn comparison(&self, dl: f64) -> Comparison {
+        let radii = match &self.eps {
+            Some(radii) => radii.0.clone(),
+            None => steps(USUAL[0] * dl, USUAL[1] * dl, USUAL_STEPS),
         };
-        let count = |c: Option<usize>| c.map_or(String::new(), |c| c.to_string());
-        let share = |s: Option<f64>| s.map_or(String::new(), |s| format!("{s:.6}"));
-        for run in &self.runs {
-            let state = match run.state {
-                RunState::Verified => "verified",
-                RunState::OtherBetti => "other-betti",
-                RunState::Refused => "refused",
-                RunState::Failed => "failed",
-            };
-            let _ = write!(
-                out,
-                "{},{},{state},{},{},{},{},{},{}",
-                run.metric,
-                run.eps,
-                three(run.betti),
-                three(run.betti_mod_2),
-                count(run.vertices),
-                count(run.triangles),
-                share(run.distortion.map(|d| d.mean)),
-                share(run.distortion.map(|d| d.max)),
-            );
-            if times {
-                let seconds = run.seconds.map_or(String::new(), |s| format!("{s:.3}"));
-                let _ = write!(out, ",{seconds}");
-            }
-            let reason = run.reason.as_deref().unwrap_or("").replace('"', "\"\"");
-            let _ = writeln!(out, ",\"{reason}\"");
+        Comparison {
+            radii,
+            analysis_eps: self.analysis_eps,
+            dp: self.dp,
+            ep: self.ep,
+            betti: self.betti,
         }
-        out
     }
 
-    fn json(&self, times: bool) -> String {
-        let mut all = json!(self);
-        if !times && let Some(runs) = all["runs"].as_array_mut() {
-            for run in runs.iter_mut().filter_map(|run| run.as_object_mut()) {
-                run.remove("seconds");
-            }
-        }
-        pretty(&all)
+    /// What all runs have in common.
+    fn base(&self, eps: f64, dl: f64) -> Result<Parameters, Failure> {
+        let boundary = match &self.boundary {
+            Some(path) => read_indices(path)?,
+            None => Vec::new(),
+        };
+        let base = Parameters {
+            dt: self.dt,
+            seed: self.seed,
+            surface: self.surface,
+            boundary,
+            method: self.method.into(),
+            spaces: self.graph.spaces(),
+            threads: threads(self.threads),
+            ..Parameters::new(eps, dl)
+        };
+        base.spaces.check()?;
+        Ok(base)
     }
 }
-
-const PAGE: &str = "\
-:root{color-scheme:light dark}\
-body{font:14px/1.5 system-ui,sans-serif;max-width:960px;margin:24px auto;padding:0 16px;background:#fff;color:#1c1e22}\
-h1{font-size:20px}.wide{overflow-x:auto}svg{max-width:100%;height:auto}\
-table{border-collapse:collapse;font-size:13px;margin:14px 0}\
-th,td{text-align:left;vertical-align:top;padding:3px 12px 3px 0;border-bottom:1px solid #8a909a55}\
-th{font-weight:600}.facts th{font-weight:400;opacity:.75}.works{font-weight:600}.not,.reason{opacity:.8}\
-.reason{min-width:260px}\
-@media (prefers-color-scheme:dark){body{background:#17191d;color:#e8eaee}}";
 
 /// Radii from the first to the second in so many steps.
 fn steps(low: f64, high: f64, count: usize) -> Vec<f64> {

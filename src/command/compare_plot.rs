@@ -92,119 +92,51 @@ pub fn escaped(text: &str) -> String {
     out
 }
 
+/// From a radius to its place on the axis.
+struct Axis {
+    low: f64,
+    high: f64,
+}
+
+impl Axis {
+    /// An axis that holds the radii of all lanes, which are those of the first.
+    fn of(lanes: &[Lane<'_>]) -> Self {
+        let runs = lanes.first().map_or(&[][..], |lane| lane.runs);
+        let (low, high) = match (runs.first(), runs.last()) {
+            (Some(a), Some(b)) if a.eps < b.eps => (a.eps, b.eps),
+            (Some(a), _) => (0.5 * a.eps, 1.5 * a.eps),
+            _ => (0.0, 1.0),
+        };
+        Self { low, high }
+    }
+
+    fn place(&self, eps: f64) -> f64 {
+        let pad = 0.03 * (self.high - self.low);
+        let share = (eps - self.low + pad) / (self.high - self.low + 2.0 * pad);
+        LEFT + share * (WIDTH - LEFT - RIGHT)
+    }
+}
+
 /// The drawing, as an SVG element. `alone` makes it a file of its own, with its style.
 pub fn svg(lanes: &[Lane<'_>], alone: bool) -> String {
-    let radii: Vec<f64> = lanes
-        .first()
-        .map_or(Vec::new(), |lane| lane.runs.iter().map(|r| r.eps).collect());
-    let (low, high) = match (radii.first(), radii.last()) {
-        (Some(&a), Some(&b)) if a < b => (a, b),
-        (Some(&a), _) => (0.5 * a, 1.5 * a),
-        _ => (0.0, 1.0),
-    };
-    let pad = 0.03 * (high - low);
-    let x = |eps: f64| LEFT + (eps - low + pad) / (high - low + 2.0 * pad) * (WIDTH - LEFT - RIGHT);
+    let axis = Axis::of(lanes);
     let lanes_end = TOP + LANE * lanes.len() as f64;
     let panel_top = lanes_end + GAP;
     let height = panel_top + PANEL + 74.0;
     let mut out = String::new();
-    // Writing to a string cannot fail.
-    let mut put = |text: std::fmt::Arguments<'_>| {
-        let _ = out.write_fmt(text);
-    };
-    let namespace = if alone {
-        " xmlns=\"http://www.w3.org/2000/svg\""
-    } else {
-        ""
-    };
-    put(format_args!(
-        "<svg{namespace} class=\"plot\" viewBox=\"0 0 {WIDTH} {height:.0}\" width=\"{WIDTH}\" height=\"{height:.0}\" \
-         role=\"img\" aria-label=\"Which metric works at which radius\">\n"
-    ));
-    if alone {
-        put(format_args!("<style>{STYLE}</style>\n"));
-        put(format_args!(
-            "<rect class=\"back\" width=\"{WIDTH}\" height=\"{height:.0}\"/>\n"
-        ));
-    }
-    put(format_args!(
-        "<text x=\"{LEFT}\" y=\"20\">Which metric works at which radius</text>\n"
-    ));
-    let ticks = ticks(low, high, 12);
-    for &tick in &ticks {
-        let at = x(tick);
-        put(format_args!(
-            "<path class=\"grid\" d=\"M{at:.1} {TOP}V{lanes_end:.1}M{at:.1} {panel_top:.1}V{:.1}\"/>\n",
-            panel_top + PANEL
-        ));
-        for base in [lanes_end, panel_top + PANEL] {
-            put(format_args!(
-                "<text class=\"faint\" x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{tick}</text>\n",
-                base + 18.0
-            ));
-        }
-    }
+    head(&mut out, height, alone);
+    grid(&mut out, &axis, lanes_end, panel_top);
     for (k, lane) in lanes.iter().enumerate() {
-        let y = TOP + LANE * (k as f64 + 0.5);
-        let class = k % 3;
-        put(format_args!(
-            "<g class=\"m{class}\"><path class=\"axis\" d=\"M{LEFT} {y:.1}H{:.1}\"/>\n<text x=\"{:.1}\" y=\"{:.1}\" \
-             text-anchor=\"end\">{}</text>\n",
-            WIDTH - RIGHT,
-            LEFT - 12.0,
-            y + 4.5,
-            escaped(&lane.name)
-        ));
-        for [from, to] in lane.intervals() {
-            put(format_args!(
-                "<rect class=\"span\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" rx=\"12\"/>\n",
-                x(from) - 12.0,
-                y - 13.0,
-                x(to) - x(from) + 24.0,
-                26.0
-            ));
-        }
-        for run in lane.runs {
-            let at = x(run.eps);
-            let numbers = run
-                .betti
-                .map_or(String::new(), |b| format!(", Betti numbers {}", betti(b)));
-            let reason = run
-                .reason
-                .as_deref()
-                .map_or(String::new(), |r| format!(": {r}"));
-            let hint = escaped(&format!(
-                "{} at {}: {}{numbers}{reason}",
-                lane.name,
-                run.eps,
-                word(run.state)
-            ));
-            let (a, b, c, d) = (at - MARK, at + MARK, y - MARK, y + MARK);
-            let mark = match run.state {
-                RunState::Verified => {
-                    format!("<circle class=\"full\" cx=\"{at:.1}\" cy=\"{y:.1}\" r=\"{MARK}\"/>")
-                }
-                RunState::OtherBetti => {
-                    format!("<path class=\"full\" d=\"M{at:.1} {c:.1}L{b:.1} {d:.1}H{a:.1}Z\"/>")
-                }
-                RunState::Refused => format!(
-                    "<circle class=\"hole\" cx=\"{at:.1}\" cy=\"{y:.1}\" r=\"{MARK}\"/><circle class=\"mark\" \
-                     cx=\"{at:.1}\" cy=\"{y:.1}\" r=\"{MARK}\"/>"
-                ),
-                RunState::Failed => format!(
-                    "<path class=\"mark\" d=\"M{a:.1} {c:.1}L{b:.1} {d:.1}M{a:.1} {d:.1}L{b:.1} {c:.1}\"/>"
-                ),
-            };
-            put(format_args!("<g>{mark}<title>{hint}</title></g>\n"));
-        }
-        put(format_args!("</g>\n"));
+        draw_lane(&mut out, lane, k, &axis);
     }
-    put(format_args!(
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        out,
         "<text class=\"faint\" x=\"{LEFT}\" y=\"{:.1}\">\u{25cf} verified  \u{25b2} verified with other Betti numbers  \
-         \u{25cb} a mesh that is refused  \u{2715} no mesh</text>\n",
+         \u{25cb} a mesh that is refused  \u{2715} no mesh</text>",
         lanes_end + 40.0
-    ));
-    panel(&mut out, lanes, &x, panel_top);
+    );
+    panel(&mut out, lanes, &axis, panel_top);
     let _ = write!(
         out,
         "<text class=\"faint\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">radius eps, unit of the data</text>\n</svg>",
@@ -214,8 +146,119 @@ pub fn svg(lanes: &[Lane<'_>], alone: bool) -> String {
     out
 }
 
+/// The element's beginning, and the title.
+fn head(out: &mut String, height: f64, alone: bool) {
+    let namespace = if alone {
+        " xmlns=\"http://www.w3.org/2000/svg\""
+    } else {
+        ""
+    };
+    let _ = writeln!(
+        out,
+        "<svg{namespace} class=\"plot\" viewBox=\"0 0 {WIDTH} {height:.0}\" width=\"{WIDTH}\" height=\"{height:.0}\" \
+         role=\"img\" aria-label=\"Which metric works at which radius\">"
+    );
+    if alone {
+        let _ = writeln!(
+            out,
+            "<style>{STYLE}</style>\n<rect class=\"back\" width=\"{WIDTH}\" height=\"{height:.0}\"/>"
+        );
+    }
+    let _ = writeln!(
+        out,
+        "<text x=\"{LEFT}\" y=\"20\">Which metric works at which radius</text>"
+    );
+}
+
+/// Lines and numbers at round radii, through lanes and panel.
+fn grid(out: &mut String, axis: &Axis, lanes_end: f64, panel_top: f64) {
+    for tick in ticks(axis.low, axis.high, 12) {
+        let at = axis.place(tick);
+        let _ = writeln!(
+            out,
+            "<path class=\"grid\" d=\"M{at:.1} {TOP}V{lanes_end:.1}M{at:.1} {panel_top:.1}V{:.1}\"/>",
+            panel_top + PANEL
+        );
+        for base in [lanes_end, panel_top + PANEL] {
+            let _ = writeln!(
+                out,
+                "<text class=\"faint\" x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{tick}</text>",
+                base + 18.0
+            );
+        }
+    }
+}
+
+/// One metric: its name, where it works, a mark for every run.
+fn draw_lane(out: &mut String, lane: &Lane<'_>, k: usize, axis: &Axis) {
+    let y = TOP + LANE * (k as f64 + 0.5);
+    let class = k % 3;
+    let _ = writeln!(
+        out,
+        "<g class=\"m{class}\"><path class=\"axis\" d=\"M{LEFT} {y:.1}H{:.1}\"/>\n<text x=\"{:.1}\" y=\"{:.1}\" \
+         text-anchor=\"end\">{}</text>",
+        WIDTH - RIGHT,
+        LEFT - 12.0,
+        y + 4.5,
+        escaped(&lane.name)
+    );
+    for [from, to] in lane.intervals() {
+        let (from, to) = (axis.place(from), axis.place(to));
+        let _ = writeln!(
+            out,
+            "<rect class=\"span\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" rx=\"12\"/>",
+            from - 12.0,
+            y - 13.0,
+            to - from + 24.0,
+            26.0
+        );
+    }
+    for run in lane.runs {
+        let mark = mark(run.state, axis.place(run.eps), y);
+        let hint = hint(&lane.name, run);
+        let _ = writeln!(out, "<g>{mark}<title>{hint}</title></g>");
+    }
+    out.push_str("</g>\n");
+}
+
+/// What a reader sees who points at a run.
+fn hint(name: &str, run: &ComparedRun) -> String {
+    let numbers = run
+        .betti
+        .map_or(String::new(), |b| format!(", Betti numbers {}", betti(b)));
+    let reason = run
+        .reason
+        .as_deref()
+        .map_or(String::new(), |r| format!(": {r}"));
+    escaped(&format!(
+        "{name} at {}: {}{numbers}{reason}",
+        run.eps,
+        word(run.state)
+    ))
+}
+
+/// The mark of how a run ended, around a place.
+fn mark(state: RunState, x: f64, y: f64) -> String {
+    let (a, b, c, d) = (x - MARK, x + MARK, y - MARK, y + MARK);
+    match state {
+        RunState::Verified => {
+            format!("<circle class=\"full\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{MARK}\"/>")
+        }
+        RunState::OtherBetti => {
+            format!("<path class=\"full\" d=\"M{x:.1} {c:.1}L{b:.1} {d:.1}H{a:.1}Z\"/>")
+        }
+        RunState::Refused => format!(
+            "<circle class=\"hole\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{MARK}\"/><circle class=\"mark\" \
+             cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{MARK}\"/>"
+        ),
+        RunState::Failed => format!(
+            "<path class=\"mark\" d=\"M{a:.1} {c:.1}L{b:.1} {d:.1}M{a:.1} {d:.1}L{b:.1} {c:.1}\"/>"
+        ),
+    }
+}
+
 /// Mean distortion of the charts over the radius.
-fn panel(out: &mut String, lanes: &[Lane<'_>], x: &dyn Fn(f64) -> f64, top: f64) {
+fn panel(out: &mut String, lanes: &[Lane<'_>], axis: &Axis, top: f64) {
     let shares = lanes
         .iter()
         .flat_map(|l| l.runs)
@@ -245,7 +288,7 @@ fn panel(out: &mut String, lanes: &[Lane<'_>], x: &dyn Fn(f64) -> f64, top: f64)
     for (k, lane) in lanes.iter().enumerate() {
         let class = k % 3;
         let places: Vec<(f64, f64)> = (lane.runs.iter())
-            .filter_map(|r| Some((x(r.eps), y(r.distortion?.mean))))
+            .filter_map(|r| Some((axis.place(r.eps), y(r.distortion?.mean))))
             .collect();
         let mut path = String::new();
         for (i, (a, b)) in places.iter().enumerate() {

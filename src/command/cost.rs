@@ -32,7 +32,8 @@ impl fmt::Display for Cost {
     }
 }
 
-fn time(spent: Duration) -> String {
+/// A time in words.
+pub fn time(spent: Duration) -> String {
     let seconds = spent.as_secs();
     match seconds {
         0..60 => format!("{:.1} s", spent.as_secs_f64()),

@@ -3,12 +3,14 @@
 use super::failure::Failure;
 use super::findings::pretty;
 use super::number::counted;
+use super::outcome::{findings, reasons, report, write_reconstruction};
 use super::paper::paper_parameters;
 use super::parameters::MethodName;
-use super::picture;
-use super::reconstruct::{findings, reasons, reconstruct, report, write_reconstruction};
+use super::reconstruct::reconstruct;
 use super::terminal::{Progress, complain, say};
+use super::{overlay, picture};
 use clap::Args;
+use crosscap::{Outcome, Parameters};
 use crosscap_algorithms::surfaces::SampleSurface;
 use crosscap_backends::files::{AnyCloud, FileError, write_bytes_whole};
 use serde_json::json;
@@ -70,10 +72,27 @@ impl Demo {
             findings.topology(),
             findings.description()
         ))?;
+        let page = self.write(surface.name(), &cloud, &parameters, &outcome)?;
+        say(format!(
+            "done in       {:.1} s\n\nOpen {} in a browser to turn it. Beside it: picture.png, mesh.npz, report.json.",
+            start.elapsed().as_secs_f64(),
+            page.display()
+        ))
+    }
+
+    /// Writes page, image, mesh and report; the page's path.
+    fn write(
+        &self,
+        surface: &str,
+        cloud: &AnyCloud,
+        parameters: &Parameters,
+        outcome: &Outcome,
+    ) -> Result<PathBuf, Failure> {
         let progress = Progress::new("drawing");
         let page = self.output.join("index.html");
         let image = self.output.join("picture.png");
-        let scene = picture::scene("Two spheres", &findings, "verified", None)?;
+        let mut scene = picture::scene("Two spheres", &findings(outcome), "verified", None)?;
+        overlay::add_points(&mut scene, &outcome.mesh, &cloud.to_f64())?;
         let pages = picture::bytes(&page, &scene, picture::SIZE)?;
         let pixels = picture::bytes(&image, &scene, picture::SIZE)?;
         std::fs::create_dir_all(&self.output).map_err(|source| FileError::Write {
@@ -84,19 +103,15 @@ impl Demo {
         write_bytes_whole(&image, &pixels)?;
         write_reconstruction(
             &self.output.join("mesh.npz"),
-            &parameters,
-            &outcome,
+            parameters,
+            outcome,
             outcome.is_verified(),
         )?;
-        let input = json!({ "surface": surface.name(), "scalar": cloud.scalar_name() });
-        let report = pretty(&report(&outcome, input));
+        let input = json!({ "surface": surface, "scalar": cloud.scalar_name() });
+        let report = pretty(&report(outcome, input));
         write_bytes_whole(self.output.join("report.json"), report.as_bytes())?;
         drop(progress);
-        say(format!(
-            "done in       {:.1} s\n\nOpen {} in a browser to turn it. Beside it: picture.png, mesh.npz, report.json.",
-            start.elapsed().as_secs_f64(),
-            page.display()
-        ))
+        Ok(page)
     }
 
     /// The folder above must be there, and the folder itself must not be a file.

@@ -42,8 +42,8 @@ const GLOBAL_NEIGHBORS: u32 = 20;
 #[derive(Args, Debug)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Dimension {
-    /// Points, one a row: .npy, .npz, .csv, .tsv, .txt, .xyz, .pts, .pdb, .ply, .pcd, .las, .off, .obj, .stl, .vtk, .vtu,
-    /// .vtp, .mat; .gz of any
+    /// Points, one a row: .npy, .npz, .csv, .tsv, .txt, .xyz, .pts, .pdb, .xtc, .dcd, .ply, .pcd, .las, .laz, .off,
+    /// .obj, .stl, .vtk, .vtu, .vtp, .mat; .gz of any
     #[arg(value_name = "POINTS")]
     points: PathBuf,
 

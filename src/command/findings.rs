@@ -70,8 +70,18 @@ impl Findings<'_> {
             }
             Err(_) => "unknown, as the pieces are".into(),
         };
+        let undone = match self.pieces {
+            Ok(pieces) => {
+                let euler: i64 = pieces.pieces.iter().map(|p| p.euler).sum();
+                match euler == self.homology.euler {
+                    true => String::new(),
+                    false => format!(", {euler} with the crossings undone"),
+                }
+            }
+            Err(_) => String::new(),
+        };
         format!(
-            "Betti      {}; Euler characteristic {}\npieces     {}\norientable {orientable}\n{}",
+            "Betti      {}; Euler characteristic {}{undone}\npieces     {}\norientable {orientable}\n{}",
             self.topology(),
             self.homology.euler,
             self.description(),

@@ -209,7 +209,7 @@ impl Paper {
                 run.betti = Some(h.betti_rational);
                 run.betti_mod_2 = Some(h.betti_mod2);
                 if !run.verified {
-                    run.reason = super::reconstruct::reasons(&outcome).into_iter().next();
+                    run.reason = super::outcome::reasons(&outcome).into_iter().next();
                 }
             }
             Err(error) if error.is_input() => return Err(error.into()),

@@ -4,7 +4,7 @@ use super::estimators::EstimatorName;
 use super::failure::Failure;
 use super::number::{positive, share};
 use super::spaces::SpaceArguments;
-use clap::{Args, ValueEnum};
+use clap::{ArgAction, Args, ValueEnum};
 use crosscap::{Method, Pinned};
 use crosscap_algorithms::singularity::ModelName;
 use crosscap_core::Error;
@@ -41,7 +41,10 @@ pub fn curve_tolerance(eps: f64) -> f64 {
     eps / 10.0
 }
 
+/// The options that the short help shows stand first, whatever group was before them.
+pub const MAIN: Option<&str> = None;
 /// What is rarely set stands apart in the help.
+pub const ATTEMPTS: &str = "Attempts and what they leave";
 const TOLERANCES: &str = "Estimators and tolerances";
 
 #[derive(Args, Debug)]
@@ -58,13 +61,13 @@ pub struct ParameterArguments {
     /// Largest radius of a chart in the triangulation, unit of the data
     ///
     /// Charts reach 3 dl, or this where it is smaller (method paper: this, or eps when left out). Must be larger than dl.
-    #[arg(long, help_heading = TOLERANCES, visible_alias = "triangulation-epsilon", value_name = "E", value_parser = positive)]
+    #[arg(long, help_heading = TOLERANCES, hide_short_help = true, visible_alias = "triangulation-epsilon", value_name = "E", value_parser = positive)]
     pub tri_eps: Option<f64>,
 
     /// Tolerance of the local dimension: the share of variance left over, 0 to 1
     ///
     /// Larger values see fewer crossings. The paper uses 0.01 to 0.075. [default: 0.05]
-    #[arg(long, help_heading = TOLERANCES, visible_alias = "dimension-tolerance", value_name = "T", value_parser = share)]
+    #[arg(long, help_heading = TOLERANCES, hide_short_help = true, visible_alias = "dimension-tolerance", value_name = "T", value_parser = share)]
     pub dt: Option<f64>,
 
     /// Estimator of the local dimension
@@ -73,6 +76,7 @@ pub struct ParameterArguments {
     #[arg(
         long,
         help_heading = TOLERANCES,
+        hide_short_help = true,
         value_name = "NAME",
         value_enum,
         default_value_t,
@@ -82,13 +86,13 @@ pub struct ParameterArguments {
 
     /// Tolerance of the fit of two sheets, unit of the data: the root mean squared distance of the points to the nearer one
     /// [default: eps / 5]
-    #[arg(long, help_heading = TOLERANCES, visible_alias = "fit-tolerance", value_name = "T", value_parser = positive)]
+    #[arg(long, help_heading = TOLERANCES, hide_short_help = true, visible_alias = "fit-tolerance", value_name = "T", value_parser = positive)]
     pub dp: Option<f64>,
 
     /// Tolerance of the double curve, unit of the data: points so near to both sheets are on it [default: eps / 10]
     ///
     /// Should exceed the sag of the surface within a neighborhood, about eps^2 / (4 x radius of curvature).
-    #[arg(long, help_heading = TOLERANCES, visible_alias = "curve-tolerance", value_name = "T", value_parser = positive)]
+    #[arg(long, help_heading = TOLERANCES, hide_short_help = true, visible_alias = "curve-tolerance", value_name = "T", value_parser = positive)]
     pub ep: Option<f64>,
 
     /// Separation of the landmarks, unit of the data: the vertices of the mesh are at least so far apart
@@ -110,13 +114,14 @@ pub struct ParameterArguments {
     /// two-planes (a double curve), refined-two-planes (the same with the paper's equation 5), boundary (found, not
     /// given), y-junction (three sheets on a curve), triple-point (three sheets crossing in a point), isolated-crossing
     /// (two sheets of R^4 or more that have one point in common), curve (no surface around), curve-through-sheet,
-    /// curve-on-sheet. With --surface only boundary is looked for. [default: auto; two-planes where --eps and --dl are
-    /// both given]
+    /// curve-on-sheet, pinch-point (a double curve ends in one sheet), crossing-end (it ends where two boundaries
+    /// cross). With --surface only boundary is looked for. [default: auto; two-planes where --eps and --dl are both
+    /// given]
     #[arg(long, value_name = "NAME,...", value_parser = models)]
     pub models: Option<Models>,
 
     /// Algorithm
-    #[arg(long, value_name = "NAME", value_enum, default_value_t)]
+    #[arg(long, help_heading = TOLERANCES, hide_short_help = true, value_name = "NAME", value_enum, default_value_t)]
     pub method: MethodName,
 
     #[command(flatten)]
@@ -124,12 +129,24 @@ pub struct ParameterArguments {
 
     /// Leave outliers out and move points that scatter onto fits of their neighborhoods, where there are any: yes or no
     /// [default: yes; no where --eps and --dl are both given]
-    #[arg(long, value_name = "YES|NO", value_parser = yes_or_no)]
+    #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "YES|NO", value_parser = yes_or_no)]
     pub prepare: Option<bool>,
 
     /// Number of threads, 0 for all processors; the result does not depend on it
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    #[arg(long, help_heading = MAIN, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
+}
+
+/// Help in two lengths, for commands with many options: the ones that most runs need, and all.
+#[derive(Args, Debug)]
+pub struct Help {
+    /// Print the options that most runs need
+    #[arg(short = 'h', long = "help", help_heading = MAIN, action = ArgAction::HelpShort)]
+    short: Option<bool>,
+
+    /// Print every option, with what it does
+    #[arg(long = "help-all", help_heading = MAIN, action = ArgAction::HelpLong)]
+    all: Option<bool>,
 }
 
 impl ParameterArguments {

@@ -4,8 +4,9 @@ use super::findings::Findings;
 use super::layout::LayoutName;
 use super::number::{betti, counted};
 use super::output::extension;
-use crosscap_backends::picture::{Layout, Scene, StillOptions, page, still};
-use crosscap_core::{Error, Mesh, PointCloud};
+use super::overlay;
+use crosscap_backends::picture::{Layout, Scene, SceneScalar, StillOptions, page, still};
+use crosscap_core::{Error, Mesh};
 use std::path::Path;
 
 /// Width and height of an image, pixels.
@@ -52,18 +53,16 @@ pub fn scene(
         facts.insert(4, ("double curves", pieces.curves.len().to_string()));
     }
     scene.facts = facts.into_iter().map(|(k, v)| (k.into(), v)).collect();
-    Ok(scene)
-}
-
-/// Shows `marks`, places in the coordinates of the mesh, where its own coordinates are shown.
-pub fn mark(scene: &mut Scene, mesh: &Mesh, marks: &PointCloud<f64>) -> Result<(), Error> {
-    let own = LayoutName::Xyz;
-    for layout in &mut scene.layouts {
-        if mesh.vertices.dimension() == 3 && layout.name == own.title() {
-            *layout = Layout::coordinates(own.title(), &mesh.vertices, Some(marks), [0, 1, 2])?;
-        }
+    let row = |&row: &i64| i32::try_from(row).unwrap_or(-1);
+    scene.vertex_rows = mesh.point_index.iter().map(row).collect();
+    if dimension == 3 {
+        scene.scalars.push(SceneScalar {
+            name: overlay::HEIGHT.into(),
+            vertices: overlay::heights(&mesh.vertices),
+            points: Vec::new(),
+        });
     }
-    Ok(())
+    Ok(scene)
 }
 
 fn layout(mesh: &Mesh, name: LayoutName) -> Result<Layout, Error> {
@@ -88,6 +87,11 @@ pub fn bytes(path: &Path, scene: &Scene, size: [usize; 2]) -> Result<Vec<u8>, Er
         "png" => still(scene, size[0], size[1], &StillOptions::default()),
         _ => page(scene).map(String::into_bytes),
     }
+}
+
+/// Whether a picture is a page, which shows points and numbers too, and not an image.
+pub fn is_page(path: &Path) -> bool {
+    extension(path) != "png"
 }
 
 /// Heading of a picture of a file.

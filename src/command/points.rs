@@ -28,29 +28,33 @@ pub enum AlignName {
 #[command(next_help_heading = "Reading points")]
 pub struct PointArguments {
     /// Which array of a .npz of points, which variable of a .mat [default: points, vertices, or the only one]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, hide_short_help = true, value_name = "NAME")]
     array: Option<String>,
 
     /// The points are the columns of the array or table
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     transpose: bool,
 
     /// Columns that are coordinates: numbers from 0 (0,1,2 or 0-2), names (x,y,z), or all [default: x, y, z where the
     /// file names them; else all, without the normals and colors of an .xyz, .asc or .pts]
-    #[arg(long, value_name = "COLUMNS")]
+    #[arg(long, hide_short_help = true, value_name = "COLUMNS")]
     columns: Option<ColumnChoice>,
 
     /// Atoms of a molecule to take, in the order of the file: numbers from 1 (1-8,10), names (CA), element:C, heavy, all
-    #[arg(long, value_name = "ATOMS")]
+    #[arg(long, hide_short_help = true, value_name = "ATOMS")]
     atoms: Option<String>,
+
+    /// Names of the atoms of a trajectory that has none (.xtc, .dcd): .pdb or .xyz with as many atoms
+    #[arg(long, hide_short_help = true, value_name = "FILE")]
+    topology: Option<PathBuf>,
 
     /// Center every frame of a molecule and turn it next to a reference conformation [default: none, or kabsch with
     /// --reference]
-    #[arg(long, value_name = "HOW", value_enum)]
+    #[arg(long, hide_short_help = true, value_name = "HOW", value_enum)]
     align: Option<AlignName>,
 
     /// The reference conformation: frame:K of the points, from 1, or a file whose first frame it is [default: frame:1]
-    #[arg(long, value_name = "FRAME|FILE")]
+    #[arg(long, hide_short_help = true, value_name = "FRAME|FILE")]
     reference: Option<String>,
 }
 
@@ -71,14 +75,15 @@ impl PointArguments {
             (None, Some(_)) => AlignName::Kabsch,
             (align, _) => align.unwrap_or(AlignName::None),
         };
-        if self.atoms.is_none() && align == AlignName::None {
+        if self.atoms.is_none() && self.topology.is_none() && align == AlignName::None {
             let file = read_point_file(path, &options)?;
             for remark in &file.remarks {
                 complain(format!("{}: {remark}", path.display()));
             }
             return Ok(file.points);
         }
-        let molecule = self.chosen(read_molecule(path, &options)?, path)?;
+        let molecule = self.named(read_molecule(path, &options)?)?;
+        let molecule = self.chosen(molecule, path)?;
         if align == AlignName::None {
             return Ok(AnyCloud::F64(molecule.frames));
         }
@@ -103,6 +108,17 @@ impl PointArguments {
             ));
         }
         Ok(AnyCloud::F64(aligned.points))
+    }
+
+    /// With the atoms of the topology, where one is given.
+    fn named(&self, molecule: Molecule) -> Result<Molecule, Failure> {
+        let Some(path) = &self.topology else {
+            return Ok(molecule);
+        };
+        let topology = read_molecule(path, &PointOptions::default())?;
+        molecule
+            .with_atoms(&topology)
+            .map_err(|message| Failure::usage(format!("{}: {message}", path.display())))
     }
 
     fn chosen(&self, molecule: Molecule, path: &Path) -> Result<Molecule, Failure> {

@@ -2,19 +2,19 @@
 
 use super::estimators::EstimatorName;
 use super::failure::Failure;
-use super::findings::{Findings, pretty};
+use super::findings::pretty;
 use super::number::{counted, positive};
-use super::parameters::{MethodName, ParameterArguments};
+use super::outcome::{duplicates, findings, report, told, verdict, write_reconstruction};
+use super::parameters::{ATTEMPTS, Help, MAIN, MethodName, ParameterArguments};
+
 use super::points::PointArguments;
 use super::terminal::{Progress, complain, say};
-use super::{choice, output, picture, refused};
+use super::{choice, output, overlay, picture, refused};
 use clap::Args;
 use crosscap::pipeline::{Outcome, Parameters, Pipeline};
-use crosscap::{Advice, Auto, GivenSpace, Pinned, Refusal};
-use crosscap_algorithms::certificate::Verdict;
+use crosscap::{Advice, Auto, Pinned, Refusal};
 use crosscap_backends::files::{
-    AnyCloud, Distances, MESH_EXTENSIONS, MeshExtras, read_distances, read_indices,
-    write_bytes_whole, write_mesh,
+    AnyCloud, Distances, MESH_EXTENSIONS, read_distances, read_indices, write_bytes_whole,
 };
 use crosscap_core::{Error, PointCloud};
 use serde_json::{Value, json};
@@ -33,19 +33,23 @@ Examples:
 A mesh that is not verified is not written unless --keep-unverified is given; the exit code is 1 either way. Report and
 picture are written all the same, and --cut-out leaves the points around the worst place.";
 
+const SHORT: &str = "Examples:
+  crosscap reconstruct points.npy -o mesh.npz
+  crosscap reconstruct points.npy -o mesh.npz --eps 0.25 --dl 0.1 --picture mesh.html
+
+--help-all shows every option: metrics, estimators, tolerances, attempts, columns, molecules.";
+
 /// Fewest points: what one neighborhood needs.
 const LEAST_POINTS: usize = 8;
 /// Attempts with parameters of the program's choice before they are advised.
 const TRIES_FOR_ADVICE: usize = 2;
-/// How many reasons of a failure are printed.
-const REASONS: usize = 8;
 
 /// Reconstruct a surface from points: triangulate, check, write
 #[derive(Args, Debug)]
-#[command(after_long_help = EXAMPLES)]
+#[command(after_help = SHORT, after_long_help = EXAMPLES, disable_help_flag = true)]
 pub struct Reconstruct {
-    /// Points, one a row: .npy, .npz, .csv, .tsv, .txt, .xyz, .pts, .pdb, .ply, .pcd, .las, .off, .obj, .stl, .vtk, .vtu,
-    /// .vtp, .mat; .gz of any
+    /// Points, one a row: .npy, .npz, .csv, .tsv, .txt, .xyz, .pts, .pdb, .xtc, .dcd, .ply, .pcd, .las, .laz, .off,
+    /// .obj, .stl, .vtk, .vtu, .vtp, .mat; .gz of any
     #[arg(value_name = "POINTS", required_unless_present = "distances")]
     points: Option<PathBuf>,
 
@@ -53,7 +57,12 @@ pub struct Reconstruct {
     ///
     /// Distances of points in a Euclidean space give these points back, up to a motion. Other distances are taken as
     /// they are: they need --surface, and what needs coordinates is not checked.
-    #[arg(long, value_name = "DISTANCES", conflicts_with = "points")]
+    #[arg(
+        long,
+        hide_short_help = true,
+        value_name = "DISTANCES",
+        conflicts_with = "points"
+    )]
     distances: Option<PathBuf>,
 
     /// Mesh to write: .npz and .vtu (keep everything), .ply, .obj, .off, .stl or .glb
@@ -64,7 +73,7 @@ pub struct Reconstruct {
     parameters: ParameterArguments,
 
     /// Rows of the points on the boundary, counted from 0: .npy or .txt
-    #[arg(long, value_name = "INDICES")]
+    #[arg(long, help_heading = MAIN, value_name = "INDICES")]
     boundary: Option<PathBuf>,
 
     #[command(flatten)]
@@ -73,32 +82,35 @@ pub struct Reconstruct {
     /// Attempts at most, where parameters are left to the program
     ///
     /// A mesh that passes after others have failed counts only when another attempt, with other landmarks, agrees.
-    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..=1000))]
     tries: u16,
 
     /// Seconds after which no further attempt begins
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "SECONDS", value_parser = positive)]
     time_limit: Option<f64>,
 
     /// Report to write, JSON: version, parameters, counts and seconds of every stage, homology, certificate
     ///
     /// Written also when there is no verified mesh, with what went wrong, where, and what was tried.
-    #[arg(long, value_name = "REPORT.json")]
+    #[arg(long, help_heading = MAIN, value_name = "REPORT.json")]
     report: Option<PathBuf>,
 
     /// Picture to write: .html (a page to turn it in) or .png
     ///
     /// When the mesh is not verified it is drawn as it is, with the places of the faults marked (in R^3).
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = MAIN, value_name = "FILE")]
     picture: Option<PathBuf>,
 
     /// Where there is no verified mesh: the points around the worst place, as a small file for a bug report
-    #[arg(long, value_name = "FILE", conflicts_with = "distances")]
+    #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "FILE", conflicts_with = "distances")]
     cut_out: Option<PathBuf>,
 
     /// Write the mesh also when it is not verified
-    #[arg(long)]
+    #[arg(long, help_heading = MAIN)]
     keep_unverified: bool,
+
+    #[command(flatten)]
+    help: Help,
 }
 
 impl Reconstruct {
@@ -278,7 +290,11 @@ impl Reconstruct {
         let verdict = verdict.as_str();
         // What may fail comes first: the mesh is written when everything else is.
         if let Some(path) = &self.picture {
-            let scene = picture::scene(&picture::title(self.input()), &findings, verdict, None)?;
+            let title = picture::title(self.input());
+            let mut scene = picture::scene(&title, &findings, verdict, None)?;
+            if let Some(points) = input.places().filter(|_| picture::is_page(path)) {
+                overlay::add_points(&mut scene, &outcome.mesh, points)?;
+            }
             write_bytes_whole(path, &picture::bytes(path, &scene, picture::SIZE)?)?;
         }
         if let Some(path) = &self.report {
@@ -347,38 +363,6 @@ impl Input {
     }
 }
 
-/// The verdict on a verified mesh in a line, with what it does not cover.
-fn verdict(outcome: &Outcome) -> String {
-    let unchecked = outcome.certificate.unchecked();
-    if unchecked.is_empty() {
-        return "verified".into();
-    }
-    let names: Vec<String> = unchecked.iter().map(ToString::to_string).collect();
-    let names = names.join(", ");
-    if outcome.certificate.by_distances.is_some() {
-        format!("verified by distances; not checked for want of coordinates: {names}")
-    } else {
-        format!("verified; not checked: {names}")
-    }
-}
-
-/// What became of distances.
-fn told(given: &GivenSpace) -> String {
-    let GivenSpace {
-        dimension,
-        deviation,
-        exact,
-    } = given;
-    if *exact {
-        format!("the distances are those of points in R^{dimension}, within {deviation:.1e}")
-    } else {
-        format!(
-            "no points have these distances: the places written, in R^{dimension}, are a picture, off by up to \
-             {deviation:.1e}"
-        )
-    }
-}
-
 /// Runs the pipeline with progress.
 pub fn reconstruct(cloud: &AnyCloud, parameters: Parameters) -> Result<Outcome, Error> {
     observed(parameters, EstimatorName::default())?.reconstruct(&cloud.to_f64())
@@ -386,11 +370,11 @@ pub fn reconstruct(cloud: &AnyCloud, parameters: Parameters) -> Result<Outcome, 
 
 /// A pipeline whose progress is shown, and its warnings as they come.
 fn observed(parameters: Parameters, estimator: EstimatorName) -> Result<Pipeline, Error> {
-    let progress = Progress::new("starting");
+    let progress = Progress::of_stages();
     let shown = progress.clone();
     let dt = parameters.dt;
     let mut pipeline = Pipeline::new(parameters)?
-        .on_stage(move |stage| shown.stage(stage))
+        .on_stage(move |stage| shown.enter(stage))
         .on_warning(move |warning| {
             progress.suspend(|| complain(format_args!("warning: {warning}")));
         });
@@ -399,89 +383,4 @@ fn observed(parameters: Parameters, estimator: EstimatorName) -> Result<Pipeline
         pipeline = pipeline.estimator(estimator.local(dt)?);
     }
     Ok(pipeline)
-}
-
-/// What is known about the mesh of an outcome.
-pub fn findings(outcome: &Outcome) -> Findings<'_> {
-    Findings {
-        mesh: &outcome.mesh,
-        homology: &outcome.homology,
-        certificate: &outcome.certificate,
-        pieces: &outcome.pieces,
-    }
-}
-
-/// Why a mesh is not verified: place and parameter to change, the first few.
-pub fn reasons(outcome: &Outcome) -> Vec<String> {
-    let mut reasons: Vec<String> = outcome.failures.iter().map(ToString::to_string).collect();
-    if let Verdict::Refused(violations) = outcome.certificate.verdict() {
-        reasons.extend(violations.iter().map(ToString::to_string));
-    }
-    let more = reasons.len().saturating_sub(REASONS);
-    reasons.truncate(REASONS);
-    if more > 0 {
-        reasons.push(format!(
-            "and {more} more (see the report of --keep-unverified)"
-        ));
-    }
-    reasons
-}
-
-/// Writes the mesh with its pieces and with what it was made from; nothing in it changes from run to run.
-pub fn write_reconstruction(
-    path: &Path,
-    parameters: &Parameters,
-    outcome: &Outcome,
-    verified: bool,
-) -> Result<(), Failure> {
-    let mut metadata = json!({
-        "crosscap": env!("CARGO_PKG_VERSION"),
-        "verified": verified,
-        "eps": parameters.eps,
-        "tri_eps": parameters.tri_eps,
-        "dt": parameters.dt,
-        "dp": parameters.dp,
-        "ep": parameters.ep,
-        "dl": parameters.dl,
-        "seed": parameters.seed,
-        "surface": parameters.surface,
-        "boundary_points": parameters.boundary.len(),
-        "models": parameters.models,
-        "method": parameters.method.to_string(),
-        "estimator": outcome.report.estimator,
-    });
-    if let Some(given) = &outcome.report.given {
-        metadata["distances"] = json!(given);
-        metadata["unchecked"] = json!(outcome.certificate.unchecked());
-    }
-    if !parameters.spaces.are_usual() {
-        metadata["spaces"] = json!(parameters.spaces);
-    }
-    let pieces = outcome.pieces.as_ref().ok();
-    let extras = MeshExtras {
-        metadata,
-        pieces: pieces.map(|p| p.triangle_piece.iter().map(|&k| k.into()).collect()),
-    };
-    let places = super::convert::places_for(path, &outcome.mesh, None)?;
-    write_mesh(path, &outcome.mesh, &extras, places.as_ref())?;
-    Ok(())
-}
-
-/// The report for programs.
-pub fn report(outcome: &Outcome, input: Value) -> Value {
-    let mut all = match json!(outcome.report) {
-        Value::Object(map) => map,
-        other => [("report".to_string(), other)].into_iter().collect(),
-    };
-    all.insert("input".into(), input);
-    all.extend(findings(outcome).json(outcome.is_verified()));
-    let failures: Vec<String> = outcome.failures.iter().map(ToString::to_string).collect();
-    all.insert("failures".into(), json!(failures));
-    Value::Object(all)
-}
-
-/// Number of duplicate points that the pipeline reports.
-fn duplicates(outcome: &Outcome) -> Option<usize> {
-    let count = json!(outcome.report).get("duplicates")?.as_u64()?;
-    usize::try_from(count).ok()
 }

@@ -2,9 +2,9 @@
 
 use super::failure::Failure;
 use super::findings::pretty;
-use super::picture;
-use super::reconstruct::{findings, report};
+use super::outcome::{findings, report};
 use super::terminal::complain;
+use super::{overlay, picture};
 use crosscap::refusal::{FaultKind, Refusal};
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::files::{write_bytes_whole, write_points};
@@ -72,9 +72,12 @@ pub fn write_picture(
         scene.facts.push(("fault".into(), fault.to_string()));
     }
     if let Some(points) = points {
-        let rows = refusal.faults.iter().flat_map(|fault| &fault.rows);
-        let marks: Vec<usize> = rows.copied().filter(|&row| row < points.len()).collect();
-        picture::mark(&mut scene, &outcome.mesh, &points.select(&marks))?;
+        if picture::is_page(path) {
+            overlay::add_points(&mut scene, &outcome.mesh, points)?;
+        }
+        let faults = refusal.faults.iter();
+        let marks: Vec<_> = faults.map(|f| (f.rows.clone(), f.to_string())).collect();
+        overlay::mark(&mut scene, &outcome.mesh, points, &marks)?;
     }
     Ok(write_bytes_whole(
         path,
@@ -107,7 +110,10 @@ pub fn write_cut_out(
 
 /// Whether a further search may help: not where the points themselves are no surface.
 pub fn may_be_helped(refusal: &Refusal) -> bool {
-    let hopeless = |kind| matches!(kind, FaultKind::Dimension | FaultKind::TwoReadings);
+    let hopeless = |kind| {
+        use FaultKind::{Dimension, Precision, TwoReadings, Unconfirmed};
+        matches!(kind, Dimension | TwoReadings | Unconfirmed | Precision)
+    };
     refusal
         .faults
         .first()

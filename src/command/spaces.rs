@@ -9,16 +9,16 @@ use crosscap_backends::geodesic::EdgeRule;
 #[derive(Args, Debug, Default)]
 pub struct GraphArguments {
     /// Join points nearer than this in the graph of geodesic distances, unit of the data: three spacings or more
-    #[arg(long, value_name = "E", value_parser = positive, conflicts_with = "graph_k")]
+    #[arg(long, hide_short_help = true, value_name = "E", value_parser = positive, conflicts_with = "graph_k")]
     pub graph_eps: Option<f64>,
 
     /// Join every point to so many nearest ones in the graph of geodesic distances [default: 30]
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, hide_short_help = true, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
     pub graph_k: Option<u32>,
 
     /// How far apart the lifted metric holds two sheets that cross at a right angle, unit of the data
     /// [default: 2 eps]
-    #[arg(long, value_name = "L", value_parser = positive)]
+    #[arg(long, hide_short_help = true, value_name = "L", value_parser = positive)]
     pub lift: Option<f64>,
 }
 
@@ -46,17 +46,23 @@ impl GraphArguments {
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Metrics")]
 pub struct SpaceArguments {
-    /// Distances of the analysis: euclidean, geodesic or lifted
+    /// Distances of the analysis: euclidean, geodesic, conformal or lifted
     ///
-    /// Decides on neighborhoods, landmarks and cells. geodesic: shortest paths through a graph of neighbors. lifted:
+    /// Decides on neighborhoods, landmarks and cells. geodesic: shortest paths through a graph of neighbors. conformal:
+    /// the same in the spacing of the points, for closed surfaces sampled unevenly. lifted:
     /// position and tangent plane together, which takes crossing sheets apart: the mesh is that of the surface before
     /// it was made to cross itself.
     /// [default: euclidean]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, hide_short_help = true, value_name = "NAME")]
     pub metric: Option<MetricName>,
 
-    /// Distances of the charts: euclidean, geodesic or lifted [default: those of the analysis]
-    #[arg(long, visible_alias = "triangulation-metric", value_name = "NAME")]
+    /// Distances of the charts: euclidean, geodesic, conformal or lifted [default: those of the analysis]
+    #[arg(
+        long,
+        hide_short_help = true,
+        visible_alias = "triangulation-metric",
+        value_name = "NAME"
+    )]
     pub tri_metric: Option<MetricName>,
 
     #[command(flatten)]
@@ -64,6 +70,6 @@ pub struct SpaceArguments {
 
     /// Size of the neighborhoods of the analysis: radius (eps everywhere), k-nearest:K (as far as the K nearest other
     /// points) or adaptive:K (from that up to eps, as large as they look flat) [default: radius]
-    #[arg(long, value_name = "POLICY")]
+    #[arg(long, hide_short_help = true, value_name = "POLICY")]
     pub neighborhoods: Option<Neighborhoods>,
 }

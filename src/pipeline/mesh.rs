@@ -2,8 +2,7 @@
 
 use crosscap_algorithms::certificate::SpecialPoint;
 use crosscap_algorithms::stratify::Stratification;
-use crosscap_algorithms::triangulate::Triangulation;
-use crosscap_core::{Complex, CurveEdge, Error, Mesh, PointCloud};
+use crosscap_core::{Complex, CurveEdge, Error, Mesh, PointCloud, Triangulation};
 
 /// The mesh of a triangulation: landmarks that were dropped leave no vertex.
 pub(super) fn mesh_of(

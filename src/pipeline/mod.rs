@@ -1,5 +1,6 @@
 //! From a point cloud to a verified surface: the parts put together with good defaults.
 
+mod making;
 mod mesh;
 mod parameters;
 mod progress;
@@ -9,7 +10,7 @@ mod run;
 
 pub use parameters::{Method, Parameters};
 pub use progress::Stage;
-pub use report::{Outcome, Report};
+pub use report::{Outcome, PluginNames, Report};
 pub(crate) use rows::{distinct_points, distinct_rows};
 pub(crate) use run::Input;
 
@@ -19,15 +20,14 @@ use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::metric::CheckedMetric;
 use crosscap_algorithms::predicate::PlanarPredicate;
-use crosscap_algorithms::stratify::Tuning;
-use crosscap_algorithms::triangulate::{
-    LargestAngle, MinimumCircumradius, Rules, Triangulation, Triangulator,
-};
+use crosscap_algorithms::stratify::{Cells, PublishedMethod, Stratifier, Tuning};
+use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, MinimumCircumradius, Rules};
 use crosscap_backends::interrupt::Interrupt;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{
     CompatibilityTest, DimensionEstimator, Error, LandmarkSelector, LocalChart, MetricSpace,
     NeighborhoodOracle, PointCloud, SingularityModel, StratifiedLandmarks, TriangleRule,
+    Triangulation, Triangulator,
 };
 use progress::StageObserver;
 
@@ -55,16 +55,42 @@ struct Parts {
     parameters: Parameters,
     tuning: Tuning,
     limits: Limits,
-    models: Vec<Box<dyn SingularityModel>>,
+    models: Models,
     estimator: Option<Box<dyn DimensionEstimator<Scalar = f64>>>,
     selector: Box<dyn LandmarkSelector<Scalar = f64>>,
     chart: Box<dyn LocalChart>,
     test: Box<dyn CompatibilityTest>,
     rule: Box<dyn TriangleRule>,
+    stratifier: Box<dyn Stratifier<f64>>,
+    triangulator: Option<Box<dyn Triangulator<f64>>>,
     oracle: Option<Box<dyn NeighborhoodOracle<Scalar = f64>>>,
     analysis_metric: Option<Custom>,
     chart_metric: Option<Custom>,
     interrupt: Interrupt,
+}
+
+/// Models that compete.
+enum Models {
+    /// Those that the parameters name.
+    Named(Vec<Box<dyn SingularityModel>>),
+    /// Others.
+    Own(Vec<Box<dyn SingularityModel>>),
+}
+
+impl Models {
+    fn named(parameters: &Parameters, tuning: &Tuning) -> Result<Self, Error> {
+        let Parameters { models, dp, ep, .. } = parameters;
+        let made = models
+            .iter()
+            .map(|name| name.tuned(*dp, *ep, &tuning.models));
+        Ok(Self::Named(made.collect::<Result<_, _>>()?))
+    }
+
+    fn all(&self) -> &[Box<dyn SingularityModel>] {
+        match self {
+            Self::Named(models) | Self::Own(models) => models,
+        }
+    }
 }
 
 impl Pipeline {
@@ -76,16 +102,17 @@ impl Pipeline {
     pub fn new(parameters: Parameters) -> Result<Self, Error> {
         parameters.check()?;
         let parts = Parts {
-            models: parameters
-                .models
-                .iter()
-                .map(|name| name.model(parameters.dp, parameters.ep))
-                .collect::<Result<_, _>>()?,
+            models: Models::named(&parameters, &Tuning::MEASURED)?,
             estimator: None,
             selector: Box::new(RandomGreedy::new()),
             chart: Box::new(ClassicalScaling),
             test: Box::new(PlanarPredicate),
             rule: Box::new(LargestAngle),
+            stratifier: match parameters.method {
+                Method::Cells => Box::new(Cells),
+                Method::Paper => Box::new(PublishedMethod),
+            },
+            triangulator: None,
             oracle: None,
             analysis_metric: None,
             chart_metric: None,
@@ -103,7 +130,7 @@ impl Pipeline {
 
     /// Singularity models that compete instead of those that the parameters name.
     pub fn models(mut self, models: Vec<Box<dyn SingularityModel>>) -> Self {
-        self.parts.models = models;
+        self.parts.models = Models::Own(models);
         self
     }
 
@@ -150,6 +177,21 @@ impl Pipeline {
         self
     }
 
+    /// Another way from the cloud to the waist than that of [`Parameters::method`].
+    pub fn stratifier(mut self, stratifier: Box<dyn Stratifier<f64>>) -> Self {
+        self.parts.stratifier = stratifier;
+        self
+    }
+
+    /// Another way from the waist to triangles than the advancing front. Chart, compatibility test and triangle rule of
+    /// this pipeline are parts of the front, and are not used then.
+    ///
+    /// An [interrupt](Self::interrupt) is heeded before and after it.
+    pub fn triangulator(mut self, triangulator: Box<dyn Triangulator<f64>>) -> Self {
+        self.parts.triangulator = Some(triangulator);
+        self
+    }
+
     /// What finds neighborhoods in the metric of the analysis, instead of a search tree or a scan: an oracle
     /// of your own over the rows of the input, of which no two may coincide.
     pub fn oracle(mut self, oracle: Box<dyn NeighborhoodOracle<Scalar = f64>>) -> Self {
@@ -157,14 +199,24 @@ impl Pipeline {
         self
     }
 
-    /// Other numbers than those that the program runs with.
+    /// Other numbers than those that the program runs with. Models of your own have theirs in them.
     pub fn tuning(mut self, tuning: Tuning) -> Self {
+        // The parameters were checked at the beginning, so that their models can be made.
+        if let (Models::Named(_), Ok(models)) = (
+            &self.parts.models,
+            Models::named(&self.parts.parameters, &tuning),
+        ) {
+            self.parts.models = models;
+        }
         self.parts.tuning = tuning;
         self
     }
 
     /// A metric of your own for the analysis, on the rows of the input: neighborhoods, landmarks, cells.
     /// Neighborhoods are found by looking at every point. Coordinates still come from the cloud.
+    ///
+    /// Charts follow it: their distances are those of this metric too, unless
+    /// [`triangulation_metric`](Self::triangulation_metric) says otherwise.
     pub fn analysis_metric(mut self, metric: Box<dyn MetricSpace<Scalar = f64>>) -> Self {
         self.parts.analysis_metric = Some(Custom::new(CheckedMetric::new(metric)));
         self
@@ -224,10 +276,9 @@ impl Pipeline {
     /// Triangulates a waist that came from elsewhere: measured distances, another program.
     ///
     /// # Errors
-    /// Those of [`Triangulator::triangulate`].
+    /// Those of [`StratifiedLandmarks::check`] and [`Triangulator::triangulate`].
     pub fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
-        let chart = self.parts.chart.as_ref();
-        self.parts.triangulator(chart).triangulate(waist)
+        self.parts.triangulated(waist, self.parts.chart.as_ref())
     }
 
     /// Does `work`, of which the run is a part, so that it can be stopped.
@@ -254,10 +305,32 @@ impl Parts {
         Threads::heeding(self.parameters.threads.unwrap_or(0), &self.interrupt)
     }
 
-    /// The triangulator that lays stars out in a chart.
-    fn triangulator<'a>(&'a self, chart: &'a dyn LocalChart) -> Triangulator<'a> {
+    /// The triangulation of a waist, looked over.
+    fn triangulated(
+        &self,
+        waist: &StratifiedLandmarks<f64>,
+        chart: &dyn LocalChart,
+    ) -> Result<Triangulation, Error> {
+        let front = self.front(chart);
+        let triangulator = self.triangulator(&front);
+        if self.triangulator.is_some() {
+            // The usual one looks for itself.
+            waist.check()?;
+        }
+        let found = triangulator.triangulate(waist)?;
+        found.check(waist, triangulator.name())?;
+        Ok(found)
+    }
+
+    /// The triangulator that was plugged in, or the usual one.
+    fn triangulator<'a>(&'a self, usual: &'a AdvancingFront<'a>) -> &'a dyn Triangulator<f64> {
+        self.triangulator.as_deref().unwrap_or(usual)
+    }
+
+    /// The usual triangulator, which lays stars out in a chart.
+    fn front<'a>(&'a self, chart: &'a dyn LocalChart) -> AdvancingFront<'a> {
         let literal = self.parameters.method == Method::Paper;
-        Triangulator {
+        AdvancingFront {
             chart,
             test: self.test.as_ref(),
             rule: if literal {
@@ -272,6 +345,7 @@ impl Parts {
             } else {
                 Rules::MEASURED
             },
+            tuning: &self.tuning.front,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What a reconstruction is asked for.
 
-use crate::spaces::Spaces;
+use crate::spaces::{MetricName, Spaces};
 use crosscap_algorithms::singularity::ModelName;
 use crosscap_core::Error;
 use serde::Serialize;
@@ -48,7 +48,7 @@ impl FromStr for Method {
 }
 
 /// Parameters of a reconstruction, all lengths in the unit of the data.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameters {
     /// Radius of the neighborhoods in which dimension and crossings are looked for (strict).
     pub eps: f64,
@@ -158,6 +158,17 @@ impl Parameters {
                 self.ep,
                 "less than eps: the band of the curve lies inside the neighborhood",
             );
+        }
+        let closed =
+            self.surface && self.boundary.is_empty() && !self.models.contains(&ModelName::Boundary);
+        if self.spaces.uses(MetricName::Conformal) && !closed {
+            return Err(Error::Parameter {
+                name: "metric",
+                value: MetricName::Conformal.to_string(),
+                expected: "another one where curves or boundaries are looked for, which are measured in straight \
+                           lines: conformal lengths ask for --surface --models two-planes and no boundary"
+                    .into(),
+            });
         }
         self.spaces.check()
     }

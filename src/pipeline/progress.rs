@@ -8,6 +8,7 @@ use std::time::Instant;
 /// A step of the way, for progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Stage {
     /// Building the neighborhood oracle.
     Index,

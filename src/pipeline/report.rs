@@ -4,17 +4,45 @@ use super::{Parameters, Stage};
 use crate::given::GivenSpace;
 use crate::spaces::Warning;
 use crate::watched::Distortion;
-use crosscap_algorithms::certificate::{Certificate, Verdict};
+use crosscap_algorithms::certificate::{Certificate, SpecialPoint, Verdict};
 use crosscap_algorithms::homology::Homology;
 use crosscap_algorithms::pieces::{Pieces, PiecesError};
 use crosscap_algorithms::stratify::{ModelCounts, StratifyCounts, Tuning};
-use crosscap_algorithms::triangulate::TriangulationCounts;
 use crosscap_backends::geodesic::GraphReport;
-use crosscap_core::{Error, Mesh};
+use crosscap_core::{Error, Mesh, TriangulationCounts};
 use serde::Serialize;
+
+/// Names of the plug-ins of a reconstruction, as they call themselves.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct PluginNames {
+    /// The metric of the analysis.
+    pub metric: String,
+    /// What served it.
+    pub oracle: String,
+    /// What measured the charts: `places` for straight lines between the places of the points, those on curves moved
+    /// onto them.
+    pub chart_metric: String,
+    /// What told the local dimension; none where every point was taken as 2-dimensional.
+    pub estimator: Option<String>,
+    /// The way from the cloud to the waist.
+    pub stratifier: String,
+    /// What chose landmarks.
+    pub selector: String,
+    /// What put triangles on them.
+    pub triangulator: String,
+    /// What laid charts out, decided which triangles may stand together, and ranked them; none of the three where a triangulator
+    /// was plugged in, which has parts of its own or none.
+    pub chart: Option<String>,
+    /// See [`chart`](Self::chart).
+    pub compatibility: Option<String>,
+    /// See [`chart`](Self::chart).
+    pub rule: Option<String>,
+}
 
 /// Counts and times of a reconstruction.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Version of this program.
     pub version: &'static str,
@@ -26,8 +54,10 @@ pub struct Report {
     pub dimension: usize,
     /// Points that coincide with an earlier one and were left out.
     pub duplicates: usize,
-    /// What told the local dimension; none where every point was taken as 2-dimensional.
-    pub estimator: Option<String>,
+    /// What worked on the points, by the names that the plug-ins give themselves; of singularity models
+    /// [`models`](Self::models) says more.
+    #[serde(flatten)]
+    pub plugins: PluginNames,
     /// Mean number of points in a neighborhood.
     pub mean_neighbors: f64,
     /// Points whose neighborhood is not 2-dimensional.
@@ -63,11 +93,14 @@ pub struct Report {
 
 /// What a reconstruction yields, verified or not.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Outcome {
     /// The mesh; vertices on double curves lie on the curve, beside their input point.
     pub mesh: Mesh,
     /// Betti numbers and torsion.
     pub homology: Homology,
+    /// Vertices at points that a model declared, with the link that each must have.
+    pub special_points: Vec<SpecialPoint>,
     /// Every level of validity with its violations.
     pub certificate: Certificate,
     /// What the surface is, where the crossing can be undone.

@@ -1,27 +1,23 @@
 //! The stages of a reconstruction, one after another.
 
-use super::mesh::{at_input_row, failures, mesh_of, special_points};
+use super::making::{Making, Triangulated};
+use super::mesh::failures;
 use super::progress::Progress;
+use super::report::PluginNames;
 use super::rows::Rows;
-use super::{Method, Outcome, Parameters, Parts, Pipeline, Report, Stage};
-use crate::spaces::{Engines, MetricName, Neighborhoods, custom, positions};
+use super::{Outcome, Parameters, Parts, Pipeline, Report, Stage};
+use crate::engines::Engines;
+use crate::spaces::{Neighborhoods, custom, positions};
 use crate::watched::{Distortion, Watched};
-use crosscap_algorithms::certificate::{
-    Certificate, CertificateOptions, Verdict, certify, certify_by_distances,
-};
+use crosscap_algorithms::certificate::Verdict;
 use crosscap_algorithms::dimension::PrincipalComponents;
-use crosscap_algorithms::homology::{Homology, homology};
-use crosscap_algorithms::moments::{LocalDimension, MomentTree};
 use crosscap_algorithms::neighborhood::{
     FlatRadius, NearestCount, NeighborhoodPolicy, PolicyOracle, Surroundings,
 };
-use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::{
-    Analysis, AnalysisOptions, Analyzer, ChartSpace, Cut, Dimensions, Published, Refinement,
-    Stratification, StratifyOptions, WaistProducer,
+    Analysis, AnalysisOptions, Analyzer, ChartSpace, Ground, StratifyOptions,
 };
-use crosscap_algorithms::triangulate::Triangulation;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{DimensionEstimator, Error, LocalChart, Mesh, MetricSpace, PointCloud};
 
@@ -34,27 +30,11 @@ pub(crate) struct Input<'i> {
 }
 
 /// A cloud ready for the stages, with what serves its metrics.
-struct Ground<'g> {
-    rows: Rows,
+pub(super) struct Prepared<'g> {
+    pub(super) rows: Rows,
     boundary: Vec<usize>,
-    engines: Engines,
-    given: Option<Space<'g, f64>>,
-}
-
-/// A waist and what was made of it.
-struct Triangulated {
-    waist: Stratification<f64>,
-    triangulation: Triangulation,
-    /// Landmarks that were added.
-    added: usize,
-}
-
-/// A mesh and what is known of it.
-struct Judged {
-    mesh: Mesh,
-    homology: Homology,
-    pieces: Result<Pieces, PiecesError>,
-    certificate: Certificate,
+    pub(super) engines: Engines,
+    pub(super) given: Option<Space<'g, f64>>,
 }
 
 impl Pipeline {
@@ -77,63 +57,49 @@ impl Pipeline {
         let mut progress = Progress::new(observer, &parts.interrupt);
         progress.enter(Stage::Index);
         let threads = parts.threads()?;
-        let ground = parts.ground(input, &threads)?;
-        let warnings = ground.engines.warnings();
+        let prepared = parts.prepare(input, &threads)?;
+        let warnings = prepared.engines.warnings();
         warnings.iter().for_each(&mut *warned);
 
         progress.enter(Stage::Neighborhoods);
-        let space = parts.space(&ground);
-        let known = parts.known_dimensions(&ground, &threads)?;
+        let watched = Watched::new(parts.chart.as_ref(), &parts.interrupt);
         let principal = PrincipalComponents::new(parts.parameters.dt)?;
-        let estimator = parts.estimator.as_deref().unwrap_or(&principal);
-        let dimensions = Dimensions::by(estimator);
-        let analyzer = Analyzer {
-            space,
-            dimensions: match &known {
-                Some(known) => dimensions.with_known(known),
-                None => dimensions,
-            },
-            models: &parts.models,
-            execute: &threads,
-            tuning: &parts.tuning,
-        };
-        let published = parts.published(&ground);
-        let analysis = match &published {
-            Some(method) => method.analyze(&analyzer)?,
-            None => analyzer.analyze(&parts.analysis_options(&ground, &analyzer, &threads)?)?,
-        };
+        let ground = parts.ground(&prepared, &principal, &watched, &threads)?;
+        let stratifier = parts.stratifier.as_ref();
+        let analysis = stratifier.analyze(&ground)?;
 
         progress.enter(Stage::Landmarks);
-        let watched = Watched::new(parts.chart.as_ref(), &parts.interrupt);
-        let producer = parts.producer(&ground, &analyzer, &analysis, published.as_ref())?;
-        let made = parts.triangulate(&ground, producer.as_ref(), &watched, &mut progress)?;
-
-        let places = producer.strata().places().unwrap_or(input.cloud);
-        let judged = parts.judge(&ground, places, &made, &mut progress)?;
+        let producer = stratifier.cut(&ground, &analysis)?;
+        let making = Making {
+            parts,
+            prepared: &prepared,
+            producer: producer.as_ref(),
+            chart: &watched,
+            places: producer.places().unwrap_or(&prepared.rows.cloud),
+        };
+        let (made, judged) = making.mesh(&mut progress)?;
         // A star that stayed open in its own chart may be complete all the same; whether it is, the
         // certificate has seen edge by edge and link by link.
-        let verified = matches!(judged.certificate.verdict(), Verdict::Verified);
-        let failures = if published.is_none() && verified {
-            Vec::new()
-        } else {
-            failures(&made.triangulation, &made.waist, &ground.rows.kept)
+        let failures = match judged.certificate.verdict() {
+            Verdict::Verified => Vec::new(),
+            _ => failures(&made.triangulation, &made.waist, &prepared.rows.kept),
         };
-        let estimator = (!parts.parameters.surface).then(|| estimator.name().to_string());
         Ok(Outcome {
             failures,
             homology: judged.homology,
             certificate: judged.certificate,
             pieces: judged.pieces,
+            special_points: judged.special_points,
             report: Report {
-                estimator,
+                plugins: parts.plugins(&ground),
                 points: input.cloud.len(),
                 chart_distortion: watched.distortion(),
                 warnings,
                 seconds: progress.finish(),
-                ..parts.report(&ground, &analysis, &made)
+                ..parts.report(&prepared, &analysis, &made)
             },
             mesh: Mesh {
-                vertices: positions(&judged.mesh.vertices, ground.rows.cloud.dimension())?,
+                vertices: positions(&judged.mesh.vertices, prepared.rows.cloud.dimension())?,
                 ..judged.mesh
             },
         })
@@ -142,7 +108,7 @@ impl Pipeline {
 
 impl Parts {
     /// Looks the input over, and builds what serves its metrics.
-    fn ground<'g>(&self, input: &Input<'g>, threads: &Threads) -> Result<Ground<'g>, Error> {
+    fn prepare<'g>(&self, input: &Input<'g>, threads: &Threads) -> Result<Prepared<'g>, Error> {
         let customs = [&self.analysis_metric, &self.chart_metric];
         for custom in customs.into_iter().flatten() {
             let count = custom.metric().len();
@@ -164,7 +130,7 @@ impl Parts {
             eps,
             ..
         } = &self.parameters;
-        Ok(Ground {
+        Ok(Prepared {
             boundary: rows.positions(input.cloud, boundary)?,
             engines: Engines::new(spaces, *eps, &rows.cloud, threads)?,
             rows,
@@ -173,11 +139,11 @@ impl Parts {
     }
 
     /// The space of the analysis.
-    fn space<'g>(&'g self, ground: &'g Ground<'_>) -> Space<'g, f64> {
-        let space = match (ground.given, &self.analysis_metric) {
+    fn space<'g>(&'g self, prepared: &'g Prepared<'_>) -> Space<'g, f64> {
+        let space = match (prepared.given, &self.analysis_metric) {
             (Some(given), _) => given,
-            (None, Some(own)) => custom(own).with_places(&ground.engines.cloud),
-            (None, None) => ground.engines.analysis(),
+            (None, Some(own)) => custom(own).with_places(&prepared.engines.cloud),
+            (None, None) => prepared.engines.analysis(),
         };
         match &self.oracle {
             Some(oracle) => space.with_oracle(oracle.as_ref()),
@@ -186,207 +152,108 @@ impl Parts {
     }
 
     /// What measures the charts.
-    fn charts<'g>(&'g self, ground: &'g Ground<'_>) -> ChartSpace<'g, f64> {
-        match (&self.chart_metric, ground.given) {
-            (Some(own), _) => ChartSpace::Metric(custom(own)),
-            (None, Some(given)) => ChartSpace::Metric(given),
-            (None, None) => ground.engines.charts(),
+    fn charts<'g>(&'g self, prepared: &'g Prepared<'_>) -> ChartSpace<'g, f64> {
+        if let Some(own) = &self.chart_metric {
+            return ChartSpace::Metric(custom(own));
+        }
+        if let Some(given) = prepared.given {
+            return ChartSpace::Metric(given);
+        }
+        // Charts follow the metric of the analysis unless another was named; straight lines are drawn between the places
+        // that points on curves are moved to.
+        let followed = self.parameters.spaces.tri_metric.is_none();
+        match self.analysis_metric.as_ref().map(custom) {
+            Some(own) if followed && !own.is_straight() => ChartSpace::Metric(own),
+            _ => prepared.engines.charts(),
         }
     }
 
-    /// The dimensions of all balls at once, where they are those of principal components: balls of one
-    /// radius in straight lines are what the moments of a search tree are of.
-    fn known_dimensions(
-        &self,
-        ground: &Ground<'_>,
-        threads: &Threads,
-    ) -> Result<Option<Vec<LocalDimension>>, Error> {
-        let Parameters {
-            surface,
-            spaces,
-            eps,
-            dt,
-            ..
-        } = &self.parameters;
-        let usual = self.estimator.is_none()
-            && self.analysis_metric.is_none()
-            && spaces.metric != MetricName::Geodesic
-            && spaces.neighborhoods == Neighborhoods::Radius;
-        if *surface || !usual {
-            return Ok(None);
-        }
-        let tree = MomentTree::with(&ground.engines.cloud, threads)?;
-        tree.settled_dimensions(*eps, *dt, threads).map(Some)
-    }
-
-    /// The published method, where it was chosen.
-    fn published(&self, ground: &Ground<'_>) -> Option<Published> {
+    /// What the stratifier works with.
+    fn ground<'g>(
+        &'g self,
+        prepared: &'g Prepared<'_>,
+        usual: &'g PrincipalComponents<f64>,
+        chart: &'g dyn LocalChart,
+        threads: &'g Threads,
+    ) -> Result<Ground<'g, f64>, Error> {
         let p = &self.parameters;
-        (p.method == Method::Paper).then(|| Published {
-            eps: p.eps,
-            tri_eps: p.chart_radius(),
+        let (space, estimator) = (
+            self.space(prepared),
+            self.estimator.as_deref().unwrap_or(usual),
+        );
+        Ok(Ground {
+            analysis: AnalysisOptions {
+                eps: p.eps,
+                radii: radii(p, &space, estimator, threads)?,
+                surface: p.surface,
+                boundary: prepared.boundary.clone(),
+            },
+            analyzer: Analyzer {
+                space,
+                estimator,
+                models: self.models.all(),
+                execute: threads,
+                tuning: &self.tuning,
+            },
             dp: p.dp,
             ep: p.ep,
-            dl: p.dl,
-            seed: p.seed,
-            surface: p.surface,
-            boundary: ground.boundary.clone(),
+            options: StratifyOptions {
+                dl: p.dl,
+                tri_eps: p.chart_radius(),
+                seed: p.seed,
+            },
+            charts: self.charts(prepared),
+            selector: self.selector.as_ref(),
+            chart,
         })
     }
 
-    fn analysis_options(
-        &self,
-        ground: &Ground<'_>,
-        analyzer: &Analyzer<'_, f64>,
-        threads: &Threads,
-    ) -> Result<AnalysisOptions, Error> {
-        let estimator = analyzer.dimensions.estimator();
-        Ok(AnalysisOptions {
-            eps: self.parameters.eps,
-            radii: radii(&self.parameters, &analyzer.space, estimator, threads)?,
-            surface: self.parameters.surface,
-            boundary: ground.boundary.clone(),
-        })
-    }
-
-    /// What makes waists of the cloud.
-    fn producer<'p>(
-        &'p self,
-        ground: &'p Ground<'_>,
-        analyzer: &'p Analyzer<'p, f64>,
-        analysis: &'p Analysis,
-        published: Option<&'p Published>,
-    ) -> Result<Box<dyn WaistProducer<f64> + 'p>, Error> {
-        let charts = self.charts(ground);
-        let selector = self.selector.as_ref();
-        if let Some(method) = published {
-            let chart = self.chart.as_ref();
-            return Ok(Box::new(
-                method.cut(analyzer, analysis, charts, selector, chart)?,
-            ));
+    /// What works on these points, by its own name.
+    fn plugins(&self, ground: &Ground<'_, f64>) -> PluginNames {
+        let space = &ground.analyzer.space;
+        let front = self.front(ground.chart);
+        let literal = self.triangulator.is_none();
+        let part = |name: &str| literal.then(|| name.to_string());
+        PluginNames {
+            metric: space.metric().name().into(),
+            oracle: space.oracle().name().into(),
+            chart_metric: match &ground.charts {
+                ChartSpace::Places => "places".into(),
+                ChartSpace::Metric(space) => space.metric().name().into(),
+            },
+            estimator: (!self.parameters.surface).then(|| ground.analyzer.estimator.name().into()),
+            stratifier: self.stratifier.name().into(),
+            selector: self.selector.name().into(),
+            triangulator: self.triangulator(&front).name().into(),
+            chart: part(front.chart.name()),
+            compatibility: part(front.test.name()),
+            rule: part(front.rule.name()),
         }
-        let options = StratifyOptions {
-            dl: self.parameters.dl,
-            tri_eps: self.parameters.chart_radius(),
-            seed: self.parameters.seed,
-        };
-        Ok(Box::new(Cut::new(
-            analyzer, analysis, charts, selector, &options,
-        )?))
-    }
-
-    /// Triangulates a waist, and others with more landmarks where triangles stray from the points.
-    fn triangulate(
-        &self,
-        ground: &Ground<'_>,
-        producer: &dyn WaistProducer<f64>,
-        chart: &dyn LocalChart,
-        progress: &mut Progress<'_>,
-    ) -> Result<Triangulated, Error> {
-        let tuning = &self.tuning.refinement;
-        let mut extra: Vec<usize> = Vec::new();
-        let mut round = 0;
-        loop {
-            let waist = producer.waist(&extra)?;
-            progress.enter(Stage::Triangulation);
-            let triangulation = self
-                .triangulator(chart)
-                .triangulate(&waist.waist)
-                .map_err(|error| at_input_row(error, &waist.rows, &ground.rows.kept))?;
-            // What cannot be triangulated is not mended by more landmarks.
-            let open = triangulation.incomplete.len() as f64;
-            let sound = open <= tuning.open_share * waist.rows.len() as f64;
-            let mut added = Vec::new();
-            if sound && producer.takes_more() && round < tuning.rounds {
-                let refinement = Refinement {
-                    near: &ground.engines.euclidean,
-                    strata: producer.strata(),
-                    rows: &waist.rows,
-                    dl: self.parameters.dl,
-                    tuning,
-                };
-                added = refinement.rows_where_astray(&triangulation.complex);
-            }
-            if added.is_empty() {
-                return Ok(Triangulated {
-                    waist,
-                    triangulation,
-                    added: extra.len(),
-                });
-            }
-            extra.extend(added);
-            round += 1;
-            progress.enter(Stage::Landmarks);
-        }
-    }
-
-    /// The mesh of a triangulation, its homology and pieces, and the verdict.
-    fn judge(
-        &self,
-        ground: &Ground<'_>,
-        places: &PointCloud<f64>,
-        made: &Triangulated,
-        progress: &mut Progress<'_>,
-    ) -> Result<Judged, Error> {
-        progress.enter(Stage::Homology);
-        let complex = &made.triangulation.complex;
-        let mesh = mesh_of(complex, &made.waist, places, &ground.rows.kept)?;
-        let homology = homology(&mesh.complex)?;
-        let pieces = pieces(&mesh);
-        progress.enter(Stage::Certificate);
-        Ok(Judged {
-            certificate: self.certify(ground, &mesh, made),
-            mesh,
-            homology,
-            pieces,
-        })
     }
 
     /// What the stages counted.
-    fn report(&self, ground: &Ground<'_>, analysis: &Analysis, made: &Triangulated) -> Report {
+    fn report(&self, prepared: &Prepared<'_>, analysis: &Analysis, made: &Triangulated) -> Report {
         Report {
             version: env!("CARGO_PKG_VERSION"),
-            points: ground.rows.cloud.len(),
-            dimension: ground.rows.cloud.dimension(),
-            duplicates: ground.rows.duplicates,
-            estimator: None,
+            points: prepared.rows.cloud.len(),
+            dimension: prepared.rows.cloud.dimension(),
+            duplicates: prepared.rows.duplicates,
+            plugins: PluginNames::default(),
             mean_neighbors: analysis.mean_neighbors(),
             candidates: analysis.candidates(),
             curve_points: analysis.curve_points(),
             unexplained: analysis.unexplained().len(),
             models: analysis.models().to_vec(),
             landmarks: made.waist.counts,
-            added_landmarks: made.added,
+            added_landmarks: made.added.len(),
             triangulation: made.triangulation.counts,
             chart_distortion: Distortion::default(),
-            graph: ground.engines.graph().cloned(),
+            graph: prepared.engines.graph().cloned(),
             given: None,
             warnings: Vec::new(),
             tuning: self.tuning.clone(),
             seconds: Vec::new(),
             parameters: self.parameters.clone(),
-        }
-    }
-
-    fn certify(&self, ground: &Ground<'_>, mesh: &Mesh, made: &Triangulated) -> Certificate {
-        let dropped: Vec<usize> = (made.triangulation.dropped.iter())
-            .map(|&k| made.waist.rows[k as usize])
-            .collect();
-        let special = special_points(mesh, &made.waist, &ground.rows.kept);
-        let options = CertificateOptions {
-            points: Some(&ground.engines.cloud),
-            landmark_separation: Some(self.parameters.dl),
-            unused_landmarks: &ground.rows.in_input(&dropped),
-            special_points: &special,
-            closed: self.parameters.boundary.is_empty()
-                && !self.models.iter().any(|m| m.finds_boundary()),
-            faithful: self.parameters.spaces.metric != MetricName::Lifted,
-            limits: self.limits.clone(),
-            ..CertificateOptions::default()
-        };
-        match &ground.given {
-            None => ground.rows.named(certify(mesh, &options)),
-            Some(space) => certify_by_distances(mesh, space.metric(), space.oracle(), &options),
         }
     }
 }

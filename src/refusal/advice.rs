@@ -23,6 +23,8 @@ pub enum Advice {
     },
     /// Leave out the points around these places, or the coordinates that are none.
     FewerDimensions,
+    /// Coordinates with more digits, or nearer to the origin.
+    MoreDigits,
     /// Leave points out.
     LeaveOut {
         /// Their rows, the first few.
@@ -52,7 +54,8 @@ impl Advice {
         };
         match first.kind {
             FaultKind::Curvature | FaultKind::TooFewPoints => more(first.measure.unwrap_or(2.0)),
-            FaultKind::TwoReadings | FaultKind::Precision => more(2.0),
+            FaultKind::TwoReadings => more(2.0),
+            FaultKind::Precision => Self::MoreDigits,
             FaultKind::Noise => Self::LessNoise {
                 dl: report.map(|report| report.parameters.dl),
             },
@@ -62,7 +65,7 @@ impl Advice {
                 rows: first.worst.iter().filter_map(|spot| spot.row).collect(),
             },
             FaultKind::Ends => Self::Boundary,
-            FaultKind::Unresolved => Self::MoreTries,
+            FaultKind::Unresolved | FaultKind::Unconfirmed => Self::MoreTries,
         }
     }
 }
@@ -88,6 +91,9 @@ impl fmt::Display for Advice {
             }
             Self::FewerDimensions => f.write_str(
                 "leave out the points there, or the columns that are no coordinates: the points are those of no surface",
+            ),
+            Self::MoreDigits => f.write_str(
+                "subtract the coordinates of a place among the points before they are rounded to 32 bits, or write 64 bits",
             ),
             Self::LeaveOut { rows } => {
                 let rows: Vec<String> = rows.iter().map(usize::to_string).collect();

@@ -28,6 +28,8 @@ pub enum FaultKind {
     Outliers,
     /// The points can be read in two ways.
     TwoReadings,
+    /// One attempt passed after others had failed, and no other one confirmed it.
+    Unconfirmed,
     /// The surface ends where nothing was found that ends.
     Ends,
     /// Coordinates are rounded to a step that is not small against the spacing of the points.
@@ -38,6 +40,7 @@ pub enum FaultKind {
 
 /// A place in the data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Spot {
     /// Row of the input, where it is one.
     pub row: Option<usize>,
@@ -49,6 +52,7 @@ pub struct Spot {
 
 /// One kind of thing that went wrong.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Fault {
     /// The kind.
     pub kind: FaultKind,
@@ -79,7 +83,11 @@ pub(super) fn faults(
     let mut faults: Vec<Fault> = Vec::new();
     if let Some(doubt) = doubt {
         faults.push(Fault {
-            kind: FaultKind::TwoReadings,
+            kind: match doubt {
+                Doubt::TwoReadings(..) => FaultKind::TwoReadings,
+                Doubt::Unconfirmed(_) => FaultKind::Unconfirmed,
+                Doubt::Rounded(_) => FaultKind::Precision,
+            },
             count: 1,
             worst: None,
             measure: None,
@@ -106,7 +114,7 @@ pub(super) fn faults(
     }
     faults.sort_by_key(|fault| {
         (
-            fault.kind != FaultKind::TwoReadings,
+            !fault.kind.is_of_the_whole(),
             std::cmp::Reverse(fault.count),
         )
     });
@@ -146,6 +154,14 @@ fn judged(trouble: &Trouble, oracle: Option<&EuclideanOracle<f64>>) -> Fault {
 }
 
 impl FaultKind {
+    /// Whether it speaks of all points together, and not of a place.
+    fn is_of_the_whole(self) -> bool {
+        matches!(
+            self,
+            Self::TwoReadings | Self::Unconfirmed | Self::Precision
+        )
+    }
+
     /// What it is, in a few words.
     pub fn meaning(self) -> &'static str {
         match self {
@@ -156,6 +172,7 @@ impl FaultKind {
             Self::TooFewPoints => "too few points",
             Self::Outliers => "points that no part of the surface is near",
             Self::TwoReadings => "the points do not decide",
+            Self::Unconfirmed => "what was found was not found again",
             Self::Ends => "the mesh ends where nothing was found that ends",
             Self::Precision => {
                 "coordinates are rounded to a step that is not small against the spacing"
@@ -195,8 +212,10 @@ impl fmt::Display for Fault {
             }
             _ => {}
         }
-        let plural = if self.count == 1 { "place" } else { "places" };
-        write!(f, ": {} {plural}", self.count)?;
+        if !self.kind.is_of_the_whole() {
+            let plural = if self.count == 1 { "place" } else { "places" };
+            write!(f, ": {} {plural}", self.count)?;
+        }
         if let Some(worst) = &self.worst {
             write!(f, ", the worst at {worst}")?;
             if let Some(spacing) = worst.spacing {

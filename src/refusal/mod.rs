@@ -21,6 +21,7 @@ use std::fmt;
 
 /// Why there is no verified mesh.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Refusal {
     /// What went wrong, one entry a kind, those of most places first.
     pub faults: Vec<Fault>,

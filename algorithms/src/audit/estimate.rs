@@ -1,13 +1,17 @@
 //! Estimates of the dimension.
 
-use super::broken;
-use crosscap_core::{DimensionEstimate, Error};
+use super::{broken, slack, spread};
+use crosscap_core::{
+    BallDimension, Balls, DimensionEstimate, DimensionEstimator, Error, Neighborhood, Scalar,
+};
+
+/// Balls that are asked about for a second time, each on its own.
+const ASKED_AGAIN: usize = 16;
 
 /// The dimension that an estimator found at `point` from so many `neighbors`, at most `space`.
 ///
 /// # Errors
-/// [`Error::Law`] for a value that is not finite or negative, a confidence outside 0 to 1, a dimension
-/// that is not the value rounded, or more dimensions than the points span.
+/// Those of [`DimensionEstimate::check`].
 pub(crate) fn dimension(
     plugin: &str,
     point: usize,
@@ -15,47 +19,53 @@ pub(crate) fn dimension(
     neighbors: usize,
     space: usize,
 ) -> Result<usize, Error> {
-    let DimensionEstimate {
-        dimension,
-        value,
-        confidence,
-        ..
-    } = *estimate;
-    if !(value.is_finite() && value >= 0.0) {
-        return broken(
-            plugin,
-            "answer: the value is finite and at least 0",
-            point,
-            format!("{value}"),
-        );
-    }
-    if !(0.0..=1.0).contains(&confidence) {
-        return broken(
-            plugin,
-            "answer: the confidence is between 0 and 1",
-            point,
-            format!("{confidence}"),
-        );
-    }
-    if (value - dimension as f64).abs() > 0.5 + ROUNDING {
-        return broken(
-            plugin,
-            "rounded: the dimension is the value rounded",
-            point,
-            format!("dimension {dimension} for the value {value}"),
-        );
-    }
-    if dimension >= neighbors.max(1) {
-        return broken(
-            plugin,
-            "answer: k points span at most k - 1 dimensions",
-            point,
-            format!("dimension {dimension} from {neighbors} points"),
-        );
-    }
+    estimate.check(plugin, point, neighbors)?;
     // A value above the dimension of the space is an error of chance.
-    Ok(dimension.min(space))
+    Ok(estimate.dimension.min(space))
 }
 
-/// A value this far beyond a half may be rounded either way.
-const ROUNDING: f64 = 1e-6;
+/// What an estimator said of all balls together: an answer for each, enough points, no more dimensions than
+/// these span, and, of balls spread over the data, what it says of them one by one.
+///
+/// # Errors
+/// [`Error::SparseNeighborhood`] for the first ball with too few points, [`Error::Law`] for what does not hold.
+pub(crate) fn dimensions<S: Scalar>(
+    estimator: &dyn DimensionEstimator<Scalar = S>,
+    balls: &Balls<'_, S>,
+    answers: &[BallDimension],
+) -> Result<(), Error> {
+    let (plugin, count) = (estimator.name(), balls.len());
+    let law = "batch: an answer for every ball";
+    if answers.len() != count {
+        let detail = format!("{} answers for {count} balls", answers.len());
+        return broken(plugin, law, 0, detail);
+    }
+    for (point, answer) in answers.iter().enumerate() {
+        balls.enough(point, answer.neighbors as usize)?;
+        if answer.dimension >= answer.neighbors.max(1) {
+            let law = "answer: k points span at most k - 1 dimensions";
+            let detail = format!("dimension {} from {}", answer.dimension, answer.neighbors);
+            return broken(plugin, law, point, detail);
+        }
+    }
+    let mut neighbors = Vec::new();
+    for center in spread(count, ASKED_AGAIN) {
+        let radius = balls.radii.of(center);
+        balls.oracle.within(center, S::of(radius), &mut neighbors);
+        let alone = estimator.estimate(&Neighborhood {
+            center,
+            radius,
+            neighbors: &neighbors,
+            metric: balls.metric,
+            cloud: balls.cloud,
+        })?;
+        let (together, alone_is) = (answers[center].dimension as usize, alone.dimension);
+        // A toss-up may fall either way.
+        if together != alone_is && alone.confidence > slack::<S>() {
+            let law = "batch: of all balls together what is said of each";
+            let detail = format!("dimension {together} of all together, {alone_is} alone");
+            return broken(plugin, law, center, detail);
+        }
+    }
+    Ok(())
+}

@@ -10,6 +10,7 @@
 //! | metric | never NaN, identity, symmetry, triangle inequality | among the neighbors of 64 points; every distance used for NaN and sign |
 //! | oracle | range, order, strictness, agreement of both queries and with the metric | at 64 points |
 //! | estimator | finite value, confidence, rounding, bound | every answer |
+//! | estimator, all balls together | an answer for each, bound; the same as one by one | every answer; the last at 16 points |
 //! | singularity model | partition, order of strata, cells at curves, points, residual, center, offset | every decomposition |
 //! | selector | candidates only, separation, covering | whole |
 //! | chart | size, finite coordinates, distortion | every chart |
@@ -32,7 +33,7 @@ mod triangulation;
 
 pub(crate) use decomposition::{local_dimension, placed, sound};
 pub(crate) use distances::{distance, metric, no_distance};
-pub(crate) use estimate::dimension;
+pub(crate) use estimate::{dimension, dimensions};
 pub(crate) use faults::Faults;
 pub(crate) use oracle::oracle;
 pub(crate) use selection::{Question, selection};

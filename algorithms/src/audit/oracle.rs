@@ -3,8 +3,6 @@
 use super::{SAMPLES, broken, distance, slack, spread};
 use crosscap_core::{Error, MetricSpace, Neighbor, NeighborhoodOracle, Scalar};
 
-/// Name of an oracle, which has none, in reports.
-const PLUGIN: &str = "neighborhood oracle";
 /// Neighbors asked for.
 const NEIGHBORS: usize = 12;
 
@@ -27,10 +25,11 @@ pub(crate) fn oracle<S: Scalar>(
             expected: format!("{count}, as many as the oracle has"),
         });
     }
+    let plugin = oracle.name();
     let (mut near, mut nearest) = (Vec::new(), Vec::new());
     for center in spread(count, SAMPLES) {
         oracle.within(center, S::of(eps), &mut near);
-        listed(center, &near, metric)?;
+        listed(plugin, center, &near, metric)?;
         if let Some(x) = near.iter().find(|x| x.distance >= S::of(eps)) {
             let detail = format!(
                 "point {} at distance {}, radius {eps}",
@@ -38,7 +37,7 @@ pub(crate) fn oracle<S: Scalar>(
                 x.distance.as_f64()
             );
             return broken(
-                PLUGIN,
+                plugin,
                 "strictness: within takes points at distance < radius",
                 center,
                 detail,
@@ -47,17 +46,17 @@ pub(crate) fn oracle<S: Scalar>(
         if !near.iter().any(|x| x.index == center) {
             let detail = format!("{} points, not the center", near.len());
             return broken(
-                PLUGIN,
+                plugin,
                 "strictness: the center is among the points within",
                 center,
                 detail,
             );
         }
         oracle.nearest(center, NEIGHBORS, &mut nearest);
-        listed(center, &nearest, metric)?;
+        listed(plugin, center, &nearest, metric)?;
         if nearest.len() != NEIGHBORS.min(count) {
             let detail = format!("{} points of the {NEIGHBORS} nearest", nearest.len());
-            return broken(PLUGIN, "equals brute force", center, detail);
+            return broken(plugin, "equals brute force", center, detail);
         }
         // All that is nearer than the last of them must be among them, in the same order.
         let last = nearest.last().map_or(S::zero(), |x| x.distance);
@@ -72,7 +71,7 @@ pub(crate) fn oracle<S: Scalar>(
                 near.len(),
                 last.as_f64()
             );
-            return broken(PLUGIN, "equals brute force", center, detail);
+            return broken(plugin, "equals brute force", center, detail);
         }
         for x in [nearest.get(1), nearest.last()].into_iter().flatten() {
             let told = x.distance.as_f64();
@@ -84,7 +83,7 @@ pub(crate) fn oracle<S: Scalar>(
                     x.index,
                     metric.name()
                 );
-                return broken(PLUGIN, "equals brute force", center, detail);
+                return broken(plugin, "equals brute force", center, detail);
             }
         }
     }
@@ -92,6 +91,7 @@ pub(crate) fn oracle<S: Scalar>(
 }
 
 fn listed<S: Scalar>(
+    plugin: &str,
     center: usize,
     found: &[Neighbor<S>],
     metric: &dyn MetricSpace<Scalar = S>,
@@ -100,7 +100,7 @@ fn listed<S: Scalar>(
     for x in found {
         if x.index >= count {
             let detail = format!("point {} of {count}", x.index);
-            return broken(PLUGIN, "equals brute force", center, detail);
+            return broken(plugin, "equals brute force", center, detail);
         }
         if !x.distance.is_finite() || x.distance < S::zero() {
             // An oracle that wraps a metric hands on what the metric says; infinity is a distance.
@@ -108,7 +108,7 @@ fn listed<S: Scalar>(
                 continue;
             }
             let detail = format!("distance {} to point {}", x.distance.as_f64(), x.index);
-            return broken(PLUGIN, "equals brute force", center, detail);
+            return broken(plugin, "equals brute force", center, detail);
         }
     }
     for pair in found.windows(2) {
@@ -116,7 +116,7 @@ fn listed<S: Scalar>(
         if key(&pair[0]) >= key(&pair[1]) {
             let detail = format!("point {} before point {}", pair[0].index, pair[1].index);
             return broken(
-                PLUGIN,
+                plugin,
                 "order: sorted by distance, ties by index",
                 center,
                 detail,

@@ -13,6 +13,7 @@ use serde::Serialize;
 /// Whether triangles overlap or cross cannot be told without places, nor how far points lie off
 /// the planes of triangles.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct DistanceReport {
     /// Smallest angle between two triangles at an ordinary edge, degrees, in the tetrahedron with the
     /// six distances of their corners; 180 is flat.

@@ -1,5 +1,6 @@
 //! Fifth level: mesh and points are near each other, both ways.
 
+use super::distance::Products;
 use super::faithful::Search;
 use super::geometry::corners;
 use super::quality::quantile;
@@ -35,6 +36,7 @@ impl Distances {
 
 /// Distances both ways between mesh and points, and landmarks that were left out.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct CoverReport {
     /// The unit of the other lengths: the landmark separation dl, unit of the data.
     pub landmark_separation: f64,
@@ -127,14 +129,18 @@ pub(super) fn check(
         // only when every triangle is a point, which has been refused
         return report;
     }
-    let noise = 4.0 * options.noise / separation;
+    // The landmark separation at an input point.
+    let at = |row: usize| separation * options.separation_scale.map_or(1.0, |scale| scale[row]);
 
     // points to mesh
     let count = mesh.complex.triangles.len();
-    let limit = limits.points_to_mesh + noise;
     let feet = search.feet;
-    let values: Vec<f64> = feet.heights.iter().map(|h| h / separation).collect();
-    let far = (0..feet.len()).filter(|&i| !within(values[i], limit));
+    let (heights, rows) = (feet.heights.iter(), &feet.rows);
+    let values: Vec<f64> = (heights.zip(rows))
+        .map(|(h, &row)| h / at(row as usize))
+        .collect();
+    let limit = |i: usize| limits.points_to_mesh + 4.0 * options.noise / at(feet.rows[i] as usize);
+    let far = (0..feet.len()).filter(|&i| !within(values[i], limit(i)));
     let far = far.map(|i| Place::Point(feet.rows[i] as usize)).collect();
     let distances = Distances::of(values);
     report.violations.extend(
@@ -142,7 +148,12 @@ pub(super) fn check(
             Place::Point(p) => points.point(p).to_vec(),
             _ => Vec::new(),
         })
-        .map(|v| v.measured(distances.max, limit)),
+        .map(|v| {
+            v.measured(
+                distances.max,
+                limits.points_to_mesh + 4.0 * options.noise / separation,
+            )
+        }),
     );
     report.points_to_mesh = Some(distances);
 
@@ -151,22 +162,27 @@ pub(super) fn check(
     report.point_spacing = search.spacing() / separation;
     report.point_gap = search.gap() / separation;
     let nearest = |row: &[f64]| cloud.nearest(row, |_| true);
-    let off_limit = limits.off_plane + noise;
+    // The landmark separation at a place of the mesh: that of the input point nearest to it.
+    let near = |place: &[f64]| match options.separation_scale {
+        None => separation,
+        Some(_) => nearest(place).map_or(separation, |n| at(n.0 as usize)),
+    };
     let (mut values, mut off_values) = (Vec::new(), Vec::new());
     let (mut far, mut off) = (Vec::new(), Vec::new());
     // the value and the limit of the place that is furthest beyond its limit
     let mut worst = (0.0, f64::INFINITY);
     // whether a place is too far from the points, where gaps of that radius are likely
-    let mut too_far = |d: f64, gap: f64| {
-        let limit = limits.mesh_to_points + noise + gap / separation;
+    let mut too_far = |d: f64, gap: f64, dl: f64| {
+        let limit = limits.mesh_to_points + 4.0 * options.noise / dl + gap / dl;
         if worst.1 == f64::INFINITY || d - limit > worst.0 - worst.1 {
             worst = (d, limit);
         }
         !within(d, limit)
     };
     for v in 0..mesh.complex.vertices {
-        let d = nearest(mesh.vertices.point(v)).map_or(0.0, |n| n.1.sqrt() / separation);
-        if too_far(d, search.gap_at_vertex(v as u32)) {
+        let dl = near(mesh.vertices.point(v));
+        let d = nearest(mesh.vertices.point(v)).map_or(0.0, |n| n.1.sqrt() / dl);
+        if too_far(d, search.gap_at_vertex(v as u32), dl) {
             far.push(Place::Vertex(v as u32));
         }
         values.push(d);
@@ -180,14 +196,15 @@ pub(super) fn check(
             mesh.vertices.point(a as usize),
             mesh.vertices.point(b as usize),
         );
-        let pieces = steps([p, q, q], separation);
+        let dl = near(p);
+        let pieces = steps([p, q, q], dl);
         for i in 1..pieces {
             let t = i as f64 / pieces as f64;
             for k in 0..n {
                 place[k] = p[k] * (1.0 - t) + q[k] * t;
             }
-            let d = nearest(&place).map_or(0.0, |n| n.1.sqrt() / separation);
-            if too_far(d, curve_gap) && seen.last() != Some(&[a, b]) {
+            let d = nearest(&place).map_or(0.0, |n| n.1.sqrt() / dl);
+            if too_far(d, curve_gap, dl) && seen.last() != Some(&[a, b]) {
                 seen.push([a, b]);
                 far.push(Place::Edge([a, b]));
             }
@@ -196,7 +213,9 @@ pub(super) fn check(
     }
     for t in 0..count as u32 {
         let c = corners(mesh, t);
-        let pieces = steps(c, separation);
+        let dl = near(c[0]);
+        let pieces = steps(c, dl);
+        let off_limit = limits.off_plane + 4.0 * options.noise / dl;
         let mut triangle_far = false;
         let mut triangle_off = 0.0_f64;
         let gap = search.gap_at(t);
@@ -205,12 +224,12 @@ pub(super) fn check(
                 place[k] = weights[0] * c[0][k] + weights[1] * c[1][k] + weights[2] * c[2][k];
             }
             if let Some((q, d)) = nearest(&place) {
-                let d = d.sqrt() / separation;
-                triangle_far |= too_far(d, gap);
+                let d = d.sqrt() / dl;
+                triangle_far |= too_far(d, gap, dl);
                 values.push(d);
                 if inner {
                     let row = points.point(q as usize);
-                    let height = off_plane(row, &place, c) / separation;
+                    let height = off_plane(row, &place, c) / dl;
                     triangle_off = triangle_off.max(height);
                     off_values.push(height);
                 }
@@ -236,6 +255,7 @@ pub(super) fn check(
     }
     let distances = Distances::of(values);
     let heights = Distances::of(off_values);
+    let off_limit = limits.off_plane + 4.0 * options.noise / separation;
     let at = |p: Place| super::coordinates(mesh, p);
     report.violations.extend(
         Violation::at(ViolationKind::MeshFarFromPoints, far, at)
@@ -251,24 +271,20 @@ pub(super) fn check(
 }
 
 /// Distance of `point` to the plane through `place` that is parallel to the triangle.
-fn off_plane(point: &[f64], place: &[f64], [a, b, c]: [&[f64]; 3]) -> f64 {
-    let (mut uu, mut uv, mut vv, mut wu, mut wv, mut ww) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for k in 0..point.len() {
-        let (u, v, w) = (b[k] - a[k], c[k] - a[k], point[k] - place[k]);
-        uu += u * u;
-        uv += u * v;
-        vv += v * v;
-        wu += w * u;
-        wv += w * v;
-        ww += w * w;
-    }
-    let determinant = uu * vv - uv * uv;
-    let inside = if determinant > 1e-14 * uu * vv {
+fn off_plane(point: &[f64], place: &[f64], triangle: [&[f64]; 3]) -> f64 {
+    let products = Products::of(point, place, triangle);
+    let Products {
+        uu,
+        uv,
+        vv,
+        wu,
+        wv,
+        ww,
+    } = products;
+    let along = products.determinant().map_or(0.0, |determinant| {
         (vv * wu * wu - 2.0 * uv * wu * wv + uu * wv * wv) / determinant
-    } else {
-        0.0
-    };
-    (ww - inside).max(0.0).sqrt()
+    });
+    (ww - along).max(0.0).sqrt()
 }
 
 #[cfg(test)]

@@ -9,24 +9,70 @@ fn dot(a: &[f64], b: &[f64], c: &[f64], d: &[f64]) -> f64 {
         .sum()
 }
 
+/// Inner products of the sides u, v of a triangle at its first corner and of w, which leads to a point.
+#[derive(Clone, Copy)]
+pub(super) struct Products {
+    pub uu: f64,
+    pub uv: f64,
+    pub vv: f64,
+    pub wu: f64,
+    pub wv: f64,
+    pub ww: f64,
+}
+
+impl Products {
+    /// Those of the triangle `a`, `b`, `c`, with w from `from` to `p`.
+    pub fn of(p: &[f64], from: &[f64], [a, b, c]: [&[f64]; 3]) -> Self {
+        let (mut uu, mut uv, mut vv, mut wu, mut wv, mut ww) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        for k in 0..p.len() {
+            let (u, v, w) = (b[k] - a[k], c[k] - a[k], p[k] - from[k]);
+            uu += u * u;
+            uv += u * v;
+            vv += v * v;
+            wu += w * u;
+            wv += w * v;
+            ww += w * w;
+        }
+        Self {
+            uu,
+            uv,
+            vv,
+            wu,
+            wv,
+            ww,
+        }
+    }
+
+    /// The square of the area of the parallelogram, where it is more than rounding.
+    pub fn determinant(&self) -> Option<f64> {
+        let determinant = self.uu * self.vv - self.uv * self.uv;
+        (determinant > 1e-14 * self.uu * self.vv).then_some(determinant)
+    }
+
+    /// Shares of u and v at the foot of the point, with w from the first corner, where that is inside the triangle.
+    pub fn inside(&self) -> Option<[f64; 2]> {
+        let determinant = self.determinant()?;
+        let s = self.vv * self.wu - self.uv * self.wv;
+        let t = self.uu * self.wv - self.uv * self.wu;
+        let inside = s >= 0.0 && t >= 0.0 && s + t <= determinant;
+        inside.then(|| [s / determinant, t / determinant])
+    }
+}
+
 /// Squared distance of `p` to the triangle `a`, `b`, `c`, which may be degenerate.
 ///
 /// Rounding: about 1e-16 of the squared distance to `a`.
 pub(super) fn point_triangle(p: &[f64], a: &[f64], b: &[f64], c: &[f64]) -> f64 {
-    let (mut uu, mut uv, mut vv, mut wu, mut wv, mut ww) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for k in 0..p.len() {
-        let (u, v, w) = (b[k] - a[k], c[k] - a[k], p[k] - a[k]);
-        uu += u * u;
-        uv += u * v;
-        vv += v * v;
-        wu += w * u;
-        wv += w * v;
-        ww += w * w;
-    }
-    let determinant = uu * vv - uv * uv;
-    let (s, t) = (vv * wu - uv * wv, uu * wv - uv * wu);
-    let squared = if determinant > 1e-14 * uu * vv && s >= 0.0 && t >= 0.0 && s + t <= determinant {
-        let (s, t) = (s / determinant, t / determinant);
+    let products = Products::of(p, a, [a, b, c]);
+    let Products {
+        uu,
+        uv,
+        vv,
+        wu,
+        wv,
+        ww,
+    } = products;
+    let squared = if let Some([s, t]) = products.inside() {
         ww - 2.0 * (s * wu + t * wv) + s * s * uu + 2.0 * s * t * uv + t * t * vv
     } else {
         let side = |along: f64, length: f64, from: f64| {

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 /// Edges by their number of triangles and by what they are marked as.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct EdgeReport {
     /// Number of edges, of triangles and of curves.
     pub edges: usize,

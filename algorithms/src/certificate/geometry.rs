@@ -4,6 +4,7 @@ use super::crossing::Places;
 use super::distance::{separated, triangle_triangle};
 use super::frame::Frame;
 use super::incidence::Incidence;
+use super::pinched::{Pinched, parted};
 use super::stacked::Planes;
 use super::tree::{Bounds, Tree};
 use super::{Limits, Place, SpecialPoint, Violation, ViolationKind, exceeds};
@@ -12,6 +13,7 @@ use serde::Serialize;
 
 /// Folds, overlaps and crossings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct GeometryReport {
     /// Triangles without area.
     pub zero_area: usize,
@@ -21,6 +23,8 @@ pub struct GeometryReport {
     pub sharp_edges: usize,
     /// Ordinary edges with an angle below the limit.
     pub folds: usize,
+    /// Smallest angle between two edges of a curve without triangles, degrees; 180 is straight. None without such curves.
+    pub smallest_bend: Option<f64>,
     /// Pairs of triangles on top of each other.
     pub stacked_pairs: usize,
     /// Pairs of triangles that cross (dimension up to 3) or touch (above) outside common faces.
@@ -110,6 +114,9 @@ pub(super) fn check(
         .extend(Violation::at(ViolationKind::ZeroArea, flat, at));
 
     folds(mesh, incidence, limits, &mut report);
+    let (bend, folded) = super::bends::check(mesh, incidence, limits.bare_fold);
+    report.smallest_bend = bend;
+    report.violations.extend(folded);
 
     let dimension = mesh.vertices.dimension();
     let planes = Planes::new(mesh);
@@ -125,6 +132,10 @@ pub(super) fn check(
             *flag = true;
         }
     }
+    let pinched: Vec<Pinched> = (special.iter())
+        .filter(|s| s.link.kind() == LinkKind::Pinch)
+        .map(|s| Pinched::new(mesh, incidence, s.vertex))
+        .collect();
     let (mut stacked, mut crossing) = (vec![], vec![]);
     let mut entangled = false;
     // boxes carry the slack of the frame already
@@ -162,15 +173,15 @@ pub(super) fn check(
             }
         }
         let near = away <= apart * apart || planes.centroids_within(s, t, reach);
+        let over = || {
+            let depth = limits.stacked_depth * small;
+            planes.stacked(s, t, limits.stacked_angle, depth, apart)
+        };
         if near
             && !shared.is_some_and(|v| is_special[v as usize])
-            && planes.stacked(
-                s,
-                t,
-                limits.stacked_angle,
-                limits.stacked_depth * small,
-                apart,
-            )
+            && over()
+            && !shared.is_some_and(|v| parted(mesh, incidence, v, [s, t]))
+            && !pinched.iter().any(|p| p.parts([s, t]))
         {
             stacked.push(Place::Triangles([s, t]));
         }
@@ -239,7 +250,8 @@ fn folds(mesh: &Mesh, incidence: &Incidence, limits: &Limits, report: &mut Geome
                 least = least.min(angle);
             }
         }
-        if at_edge.len() == 2 {
+        // An edge that is marked with two cells may be a crease.
+        if at_edge.len() == 2 && incidence.cells[e] != Some(2) {
             worst = worst.min(least);
             report.sharp_edges += usize::from(least < 45.0);
             if least < limits.fold {

@@ -84,6 +84,20 @@ impl Incidence {
         &self.triangles[self.starts[edge] as usize..self.starts[edge + 1] as usize]
     }
 
+    /// The number of cells that an edge is marked with, `None` for an ordinary edge and for none.
+    pub fn cells_at(&self, [a, b]: [u32; 2]) -> Option<u8> {
+        let edge = self.edges.binary_search(&[a.min(b), a.max(b)]).ok()?;
+        self.cells[edge]
+    }
+
+    /// Triangles at an edge that is on no curve; none at any other.
+    pub fn at_ordinary_edge(&self, [a, b]: [u32; 2]) -> &[u32] {
+        match self.edges.binary_search(&[a.min(b), a.max(b)]) {
+            Ok(edge) if self.cells[edge].is_none() => self.at_edge(edge),
+            _ => &[],
+        }
+    }
+
     /// Triangles at a vertex, in increasing order.
     pub fn at_vertex(&self, vertex: usize) -> &[u32] {
         &self.vertex_triangles

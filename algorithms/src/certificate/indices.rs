@@ -6,6 +6,7 @@ use serde::Serialize;
 
 /// Whether the arrays describe a simplicial complex with distinct places.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct IndexReport {
     /// Number of vertices.
     pub vertices: usize,

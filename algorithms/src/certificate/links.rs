@@ -8,11 +8,11 @@
 use super::incidence::Incidence;
 use super::{Place, Violation, ViolationKind};
 use crosscap_core::{Link, LinkKind, Mesh};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A vertex that is declared to be a special point, a stratum of dimension 0.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SpecialPoint {
     /// The vertex.
     pub vertex: u32,
@@ -22,6 +22,7 @@ pub struct SpecialPoint {
 
 /// Vertices by the kind of their link.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LinkReport {
     /// Number of vertices of each kind of link; vertices without any edge are left out.
     pub census: BTreeMap<LinkKind, usize>,

@@ -16,6 +16,7 @@
 //! Nothing here knows the true surface. What cannot be decided without it (the right Betti
 //! numbers, a handle too small for the landmarks) is not decided.
 
+mod bends;
 mod by_distances;
 mod cover;
 mod crossing;
@@ -25,9 +26,11 @@ mod edges;
 mod faithful;
 mod frame;
 mod geometry;
+mod heights;
 mod incidence;
 mod indices;
 mod links;
+mod pinched;
 mod quality;
 mod stacked;
 mod tree;
@@ -40,8 +43,9 @@ pub use by_distances::{DistanceReport, certify_by_distances};
 pub use cover::{CoverReport, Distances};
 pub use crosscap_core::{Link, LinkKind};
 pub use edges::EdgeReport;
-pub use faithful::{FaithfulReport, Gap, Merged, Offset};
+pub use faithful::{FaithfulReport, Gap, Merged, Offset, Stretch};
 pub use geometry::GeometryReport;
+pub use heights::distances_to_mesh;
 pub use indices::IndexReport;
 pub use links::{LinkReport, SpecialPoint};
 pub use quality::{Cell, QualityReport, Spread};
@@ -63,6 +67,9 @@ pub struct Limits {
     pub shortest_boundary: usize,
     /// Least angle between the two triangles at an ordinary edge, degrees; flat is 180.
     pub fold: f64,
+    /// Least angle between two edges of a curve without triangles, at a vertex where nothing else is, degrees. Three landmarks of
+    /// a segment that are joined in a circle have angles near 0, those of a round circle 60.
+    pub bare_fold: f64,
     /// Least angle between two of the triangles at a curve edge, degrees. Sheets may cross
     /// at a small angle; below this they are the same.
     pub curve_fold: f64,
@@ -106,6 +113,7 @@ impl Default for Limits {
         Self {
             shortest_boundary: 6,
             fold: 20.0,
+            bare_fold: 45.0,
             curve_fold: 2.0,
             stacked_angle: 25.0,
             stacked_offset: 0.35,
@@ -131,6 +139,9 @@ pub struct CertificateOptions<'a> {
     pub points: Option<&'a PointCloud<f64>>,
     /// Landmark separation dl, unit of the data; 3/4 of the median edge when left out.
     pub landmark_separation: Option<f64>,
+    /// How many times that the separation at each input point is, where landmarks follow the spacing of the points;
+    /// once everywhere when left out. Distances between mesh and points are measured in the separation where they are.
+    pub separation_scale: Option<&'a [f64]>,
     /// Rows of the input that were selected as landmarks and are not in the mesh.
     pub unused_landmarks: &'a [usize],
     /// Strata of dimension 0: vertices whose link is declared.
@@ -155,6 +166,7 @@ impl Default for CertificateOptions<'_> {
         Self {
             points: None,
             landmark_separation: None,
+            separation_scale: None,
             unused_landmarks: &[],
             special_points: &[],
             admissible_links: &LinkKind::GENERIC,
@@ -172,6 +184,7 @@ impl CertificateOptions<'_> {
         let l = &self.limits;
         let named = [
             ("fold", l.fold),
+            ("bare_fold", l.bare_fold),
             ("curve_fold", l.curve_fold),
             ("stacked_angle", l.stacked_angle),
             ("stacked_offset", l.stacked_offset),
@@ -215,6 +228,18 @@ impl CertificateOptions<'_> {
                 ),
             ));
         }
+        let rows = self.points.map_or(0, PointCloud::len);
+        if let Some(scale) = self.separation_scale
+            && !(scale.len() == rows && scale.iter().all(|s| *s > 0.0 && s.is_finite()))
+        {
+            return Some(Violation::whole(
+                ViolationKind::Options,
+                format!(
+                    "a scale of the landmark separation of {} numbers, expected {rows} positive ones",
+                    scale.len()
+                ),
+            ));
+        }
         if self.points.is_some_and(|p| u32::try_from(p.len()).is_err()) {
             return Some(Violation::whole(
                 ViolationKind::Options,
@@ -228,6 +253,7 @@ impl CertificateOptions<'_> {
 /// The reports of all levels. A level that could not be asked, because an earlier one found
 /// the arrays unusable, is missing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Certificate {
     /// Whether the arrays are those of a simplicial complex with distinct places.
     pub indices: IndexReport,

@@ -66,6 +66,7 @@ pub struct Cell {
 
 /// Shapes of triangles and the cells they make. Only needles are a violation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct QualityReport {
     /// Smallest angle of each triangle, degrees.
     pub min_angle: Spread,

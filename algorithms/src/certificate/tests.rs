@@ -361,6 +361,30 @@ fn curves_without_surface() {
     );
 }
 
+/// Three landmarks of a segment joined in a circle, and the circle that is one.
+#[test]
+fn a_segment_is_no_circle() {
+    let circle = |places: [[f64; 3]; 3]| {
+        let mut draft = icosphere(2);
+        let [a, b, c] = places.map(|p| draft.add(&p));
+        draft
+            .curves
+            .extend([[a, b], [b, c], [a, c]].map(|[p, q]| CurveEdge::new(p, q, 0)));
+        draft
+    };
+    let folded = circle([[0.0, 0.0, 5.0], [0.0, 0.1, 6.0], [0.0, 0.0, 7.0]]);
+    assert_eq!(folded.kinds(), [ViolationKind::BareFold]);
+    let bend = folded
+        .certificate()
+        .geometry
+        .unwrap()
+        .smallest_bend
+        .unwrap();
+    assert!((5.0..6.0).contains(&bend), "{bend}");
+    let round = circle([[0.0, 0.0, 5.0], [0.0, 0.9, 5.5], [0.0, 0.0, 6.0]]);
+    assert_eq!(round.kinds(), []);
+}
+
 #[test]
 fn unusable_arrays() {
     let good = icosphere(0).mesh();

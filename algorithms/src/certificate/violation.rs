@@ -82,6 +82,8 @@ pub enum ViolationKind {
     ZeroArea,
     /// Two triangles folded onto each other over an ordinary edge.
     Fold,
+    /// Two edges of a curve without triangles lie on each other.
+    BareFold,
     /// Two of the triangles at a curve edge lie on each other.
     CurveFold,
     /// Two triangles without a common edge lie on top of each other.
@@ -103,6 +105,9 @@ pub enum ViolationKind {
     /// An empty region of the points that the mesh covers, and that chance does not explain: a hole, a slit
     /// or a cut.
     BridgedGap,
+    /// A stretch of a curve without points that chance does not explain: there are two curves, or the curve ends before
+    /// what the mesh joins it to.
+    BareStretch,
     /// Two sheets of points, one over the other, that the mesh takes for one.
     MergedSheets,
     /// Vertices off the points of a sheet at them.
@@ -122,11 +127,10 @@ impl ViolationKind {
                 Level::Edges
             }
             InadmissibleLink | SplitLink | Pinch | SpecialPoint => Level::Links,
-            ZeroArea | Fold | CurveFold | Stacked | SelfIntersection | NearCrossing | Entangled => {
-                Level::Geometry
-            }
+            ZeroArea | Fold | BareFold | CurveFold | Stacked | SelfIntersection | NearCrossing
+            | Entangled => Level::Geometry,
             UncoveredPoints | MeshFarFromPoints | MeshOffPoints | UnusedLandmarks => Level::Cover,
-            BridgedGap | MergedSheets | VertexOffPoints => Level::Faithful,
+            BridgedGap | BareStretch | MergedSheets | VertexOffPoints => Level::Faithful,
             NeedleTriangle => Level::Quality,
         }
     }
@@ -155,6 +159,7 @@ impl ViolationKind {
             SpecialPoint => "declared special points with another link",
             ZeroArea => "triangles without area",
             Fold => "ordinary edges with a fold",
+            BareFold => "vertices where a curve turns back on itself",
             CurveFold => "curve edges with two triangles on each other",
             Stacked => "pairs of stacked triangles",
             SelfIntersection => "pairs of triangles that cross",
@@ -165,6 +170,7 @@ impl ViolationKind {
             MeshOffPoints => "triangles off the input points next to them",
             UnusedLandmarks => "landmarks not in the mesh",
             BridgedGap => "gaps of the points that the mesh covers",
+            BareStretch => "edges of curves where the points leave a gap",
             MergedSheets => "vertices where two sheets of points are one in the mesh",
             VertexOffPoints => "vertices off the points around them",
             NeedleTriangle => "triangles with an angle of nearly zero",
@@ -214,6 +220,7 @@ impl ViolationKind {
             ZeroArea | NeedleTriangle => {
                 "increase dl relative to the noise, or remove nearly repeated points"
             }
+            BareFold => "decrease dl: the curve has too few landmarks to show where it goes",
             Fold | CurveFold | Stacked => {
                 "decrease the triangulation radius or dl: a chart folds, or two sheets are closer \
                  than the landmarks can tell apart"
@@ -234,6 +241,9 @@ impl ViolationKind {
                 "decrease the triangulation radius or dl: triangles bridge empty space"
             }
             BridgedGap => "decrease dl, so that the mesh leaves the gap open",
+            BareStretch => {
+                "decrease dl and eps, so that the mesh leaves the gap open; or give more points of the curve"
+            }
             MergedSheets => "decrease dl and eps below the distance of the sheets",
             VertexOffPoints => "decrease dl or eps: the sheets bend within a neighborhood",
             UnusedLandmarks => "increase the triangulation radius, or decrease the noise",
@@ -277,6 +287,7 @@ impl fmt::Display for Place {
 
 /// One kind of violation with all its places.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Violation {
     /// What is wrong.
     pub kind: ViolationKind,
@@ -350,6 +361,20 @@ impl Violation {
     }
 }
 
+/// A number as it is printed: probabilities are too small for decimals.
+struct Figure(f64);
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = *self;
+        if value != 0.0 && value.abs() < 0.01 {
+            write!(f, "{value:.1e}")
+        } else {
+            write!(f, "{value:.4}")
+        }
+    }
+}
+
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.count, self.kind.meaning())?;
@@ -357,7 +382,12 @@ impl fmt::Display for Violation {
             write!(f, " ({})", self.detail)?;
         }
         if let (Some(worst), Some(limit)) = (self.worst, self.limit) {
-            write!(f, ", worst {worst:.4} against a limit of {limit:.4}")?;
+            write!(
+                f,
+                ", worst {} against a limit of {}",
+                Figure(worst),
+                Figure(limit)
+            )?;
         }
         if let Some(first) = self.places.first() {
             write!(f, "; first at {first}")?;

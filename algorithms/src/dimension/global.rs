@@ -142,6 +142,7 @@ impl<S: Scalar> WholeCloud<'_, S> {
 
 /// The dimension of a cloud with its evidence.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct GlobalDimension {
     /// The estimate as a whole number.
     pub dimension: usize,

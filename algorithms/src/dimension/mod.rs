@@ -32,6 +32,7 @@ mod geodesic_tree;
 mod global;
 mod jackknife;
 mod likelihood;
+mod ordered;
 mod packing;
 mod pairs;
 mod pca;

@@ -53,19 +53,30 @@ impl<S: Scalar> PackingNumbers<S> {
     }
 }
 
-/// Mean logarithm of the size of a packing at separation `r` of the points that are kept.
-fn log_size(pairs: &Pairs, orders: &[Vec<usize>], r: f64, kept: impl Fn(usize) -> bool) -> f64 {
-    let mut centers: Vec<usize> = Vec::with_capacity(pairs.count);
+/// For every point those that cannot be centers beside it at separation `r`, one bit a point.
+fn covers(pairs: &Pairs, r: f64) -> Vec<u128> {
+    let bits = |row: &[f64]| {
+        let apart = row.iter().map(|&d| d >= r);
+        apart
+            .enumerate()
+            .fold(0, |bits, (b, apart)| bits | u128::from(!apart) << b)
+    };
+    (0..pairs.count).map(|a| bits(pairs.row(a))).collect()
+}
+
+/// Mean logarithm of the size of a packing, of the points that are kept.
+fn log_size(covers: &[u128], orders: &[Vec<usize>], kept: u128) -> f64 {
     let mut sum = 0.0;
     for order in orders {
-        centers.clear();
-        for &a in order.iter().filter(|&&a| kept(a)) {
-            let row = pairs.row(a);
-            if centers.iter().all(|&c| row[c] >= r) {
-                centers.push(a);
+        let mut left = kept;
+        let mut size = 0_u32;
+        for &a in order {
+            if left >> a & 1 == 1 {
+                left &= !(covers[a] | 1 << a);
+                size += 1;
             }
         }
-        sum += (centers.len() as f64).ln();
+        sum += f64::from(size).ln();
     }
     sum / orders.len() as f64
 }
@@ -84,8 +95,10 @@ impl<S: Scalar> DimensionEstimator for PackingNumbers<S> {
             .map(|_| random.permutation(pairs.count))
             .collect();
         let span = SHARES.map(|s| (1.0 + 2.0 / s).ln());
+        let covers = SHARES.map(|s| covers(&pairs, s * pairs.reach));
         let slope = |kept: &dyn Fn(usize) -> bool| {
-            let sizes = SHARES.map(|s| log_size(&pairs, &orders, s * pairs.reach, kept));
+            let kept = (0..pairs.count).fold(0, |bits, rank| bits | u128::from(kept(rank)) << rank);
+            let sizes = covers.each_ref().map(|c| log_size(c, &orders, kept));
             (sizes[0] - sizes[1]) / (span[0] - span[1])
         };
         Ok(decide(slope(&|_| true), error_by_ranks(slope), most))

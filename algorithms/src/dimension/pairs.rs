@@ -3,7 +3,7 @@
 use crosscap_core::{Error, Neighborhood, Scalar};
 
 /// Most points whose pairs are looked at; a larger neighborhood is thinned evenly by distance from
-/// its center, so that its extent stays.
+/// its center, so that its extent stays. A set of them fits into a `u128`.
 const MOST: usize = 128;
 
 /// Points of a neighborhood with all distances between them, in the order of their distance from

@@ -1,8 +1,13 @@
 //! Dimension by principal component analysis with a tolerance.
 
 use super::global::{GlobalDimension, GlobalEstimator, WholeCloud};
+use crate::moments::MomentTree;
 use crate::principal::PrincipalFrame;
-use crosscap_core::{DimensionEstimate, DimensionEstimator, Error, Neighborhood, Scalar};
+use crate::spectrum::VarianceTolerance;
+use crosscap_core::execute::Execute;
+use crosscap_core::{
+    BallDimension, Balls, DimensionEstimate, DimensionEstimator, Error, Neighborhood, Radii, Scalar,
+};
 use std::marker::PhantomData;
 
 /// The smallest d for which the variances after the d-th are less than the share `dt` of all
@@ -17,7 +22,7 @@ use std::marker::PhantomData;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct PrincipalComponents<S> {
-    dt: f64,
+    tolerance: VarianceTolerance,
     scalar: PhantomData<S>,
 }
 
@@ -27,15 +32,8 @@ impl<S: Scalar> PrincipalComponents<S> {
     /// # Errors
     /// [`Error::Parameter`] unless `0 < dt < 1`.
     pub fn new(dt: f64) -> Result<Self, Error> {
-        if !(dt > 0.0 && dt < 1.0) {
-            return Err(Error::Parameter {
-                name: "dt",
-                value: dt.to_string(),
-                expected: "a number strictly between 0 and 1".into(),
-            });
-        }
         Ok(Self {
-            dt,
+            tolerance: VarianceTolerance::new(dt)?,
             scalar: PhantomData,
         })
     }
@@ -44,27 +42,7 @@ impl<S: Scalar> PrincipalComponents<S> {
     /// as a number) and its confidence: how far the deciding shares are from `dt`, on a
     /// logarithmic scale, 1 from a factor of ten on.
     pub fn dimension_of(&self, variances: &[f64]) -> (usize, f64, f64) {
-        let total: f64 = variances.iter().sum();
-        if total <= 0.0 {
-            return (0, 0.0, 1.0);
-        }
-        let mut tail = total;
-        let mut before = f64::INFINITY;
-        let mut dimension = variances.len();
-        let mut after = 0.0;
-        for (d, v) in variances.iter().enumerate() {
-            before = tail / total;
-            tail -= v;
-            after = (tail / total).max(0.0);
-            if after < self.dt {
-                dimension = d + 1;
-                break;
-            }
-        }
-        let margin = (before / self.dt)
-            .log10()
-            .min((self.dt / after.max(1e-300)).log10());
-        (dimension, dimension as f64, margin.clamp(0.0, 1.0))
+        self.tolerance.dimension_of(variances)
     }
 }
 
@@ -92,6 +70,22 @@ impl<S: Scalar> DimensionEstimator for PrincipalComponents<S> {
             confidence,
             spectrum: frame.variances,
         })
+    }
+
+    /// Where distances are straight lines and balls are of one size, from the moments of a search tree
+    /// ([`MomentTree::settled_dimensions`]).
+    fn estimate_all(
+        &self,
+        balls: &Balls<'_, S>,
+        execute: &dyn Execute,
+    ) -> Result<Vec<BallDimension>, Error> {
+        match (balls.metric.places(), balls.radii) {
+            (Some(places), Radii::Same(radius)) => {
+                let tree = MomentTree::with(places, execute)?;
+                tree.settled_dimensions(radius, self.tolerance.share(), execute)
+            }
+            _ => balls.one_by_one(self.name(), execute, |ball| self.estimate(ball)),
+        }
     }
 
     fn of_variances(&self, variances: &[f64]) -> Option<DimensionEstimate> {

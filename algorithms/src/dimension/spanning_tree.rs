@@ -4,6 +4,7 @@ use super::decision::decide;
 use super::geodesic_tree::NeighborGraph;
 use super::global::{GlobalDimension, GlobalEstimator, WholeCloud};
 use super::jackknife::{Draws, GROUPS, error_by_ranks, standard_error};
+use super::ordered::Ordered;
 use super::pairs::Pairs;
 use crate::execute;
 use crate::surfaces::Random;
@@ -52,35 +53,6 @@ impl<S: Scalar> SpanningTree<S> {
     }
 }
 
-/// Length of the minimum spanning tree of some points, by Prim's algorithm. O(p^2).
-fn tree_length(pairs: &Pairs, points: &[usize], away: &mut Vec<f64>) -> f64 {
-    away.clear();
-    away.resize(points.len(), f64::INFINITY);
-    let mut length = 0.0;
-    let mut last = 0;
-    for _ in 1..points.len() {
-        away[last] = f64::NEG_INFINITY;
-        let row = pairs.row(points[last]);
-        let mut next = last;
-        let mut least = f64::INFINITY;
-        for (k, &p) in points.iter().enumerate() {
-            if away[k] > f64::NEG_INFINITY {
-                away[k] = away[k].min(row[p]);
-                if away[k] < least {
-                    (least, next) = (away[k], k);
-                }
-            }
-        }
-        if next == last {
-            // No way leads to the rest.
-            break;
-        }
-        length += least;
-        last = next;
-    }
-    length
-}
-
 /// The dimension that belongs to mean logarithms of lengths at logarithms of sizes.
 fn dimension_of(points: &[(f64, f64)], most: usize) -> f64 {
     let count = points.len() as f64;
@@ -103,29 +75,23 @@ impl<S: Scalar> DimensionEstimator for SpanningTree<S> {
         let pairs = Pairs::of(near, LEAST)?;
         let most = near.neighbors.len() - 1;
         let mut random = Random::new(SEED);
-        let orders: Vec<Vec<usize>> = (0..DRAWN)
-            .map(|_| random.permutation(pairs.count))
+        let mut orders: Vec<Ordered> = (0..DRAWN)
+            .map(|_| Ordered::new(&pairs, random.permutation(pairs.count)))
             .collect();
-        let mut away = Vec::new();
-        let mut chosen = Vec::new();
         let mut flat = false;
         let mut value = |kept: &dyn Fn(usize) -> bool| {
-            let mut points = Vec::with_capacity(SHARES.len());
-            for share in SHARES {
-                let (mut sum, mut size) = (0.0, 0.0);
+            let left = (0..pairs.count).filter(|&rank| kept(rank)).count();
+            let points = SHARES.map(|share| {
+                let take = (left as f64 * share).round() as usize;
                 let drawn = if share < 1.0 { DRAWN } else { 1 };
-                for order in &orders[..drawn] {
-                    chosen.clear();
-                    chosen.extend(order.iter().copied().filter(|&a| kept(a)));
-                    let take = (chosen.len() as f64 * share).round() as usize;
-                    chosen.truncate(take);
-                    let length = tree_length(&pairs, &chosen, &mut away);
+                let mut sum = 0.0;
+                for order in &mut orders[..drawn] {
+                    let length = order.tree_length(kept, take);
                     flat |= length <= 0.0;
                     sum += length.ln();
-                    size = take as f64;
                 }
-                points.push((size.ln(), sum / drawn as f64));
-            }
+                ((take as f64).ln(), sum / drawn as f64)
+            });
             dimension_of(&points, most)
         };
         let all = value(&|_| true);

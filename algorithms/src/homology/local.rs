@@ -9,6 +9,7 @@ use serde::Serialize;
 
 /// A neighborhood that is not contractible.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct LocalFailure {
     /// The vertex at its center.
     pub vertex: u32,
@@ -22,6 +23,7 @@ pub struct LocalFailure {
 
 /// What [`local_homology`] found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LocalHomology {
     /// Radius of the neighborhoods, unit of the data.
     pub radius: f64,

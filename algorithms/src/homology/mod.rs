@@ -62,6 +62,7 @@ pub enum BettiError {
 
 /// The homology of a complex of dimension at most 2, exactly.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Homology {
     /// Ranks of H0, H1, H2: Betti numbers over the rational numbers.
     pub betti_rational: [usize; 3],

@@ -20,6 +20,7 @@ use crosscap_core::{Error, PointCloud};
 
 /// Places in a space of low dimension, with what the map lost.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Embedding {
     /// One place for each point or vertex, in the order of the input and in its unit. Every
     /// connected component has its mean at the origin before components are laid side by side.

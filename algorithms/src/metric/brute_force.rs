@@ -69,6 +69,10 @@ impl<M: MetricSpace> NeighborhoodOracle for BruteForceOracle<M> {
         }
         sort(out);
     }
+
+    fn name(&self) -> &str {
+        "scan"
+    }
 }
 
 fn sort<S: Scalar>(neighbors: &mut [Neighbor<S>]) {

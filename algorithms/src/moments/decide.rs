@@ -98,7 +98,7 @@ pub(super) fn compressed(c: &[f64], m: usize, rest: f64, dt: f64) -> Option<u32>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dimension::PrincipalComponents;
+    use crate::spectrum::VarianceTolerance;
     use nalgebra::{DMatrix, SymmetricEigen};
     use proptest::prelude::*;
 
@@ -115,9 +115,7 @@ mod tests {
             tail -= v;
             (tail / total - dt).abs() < 1e-9
         });
-        let found = PrincipalComponents::<f64>::new(dt)
-            .unwrap()
-            .dimension_of(&values);
+        let found = VarianceTolerance::new(dt).unwrap().dimension_of(&values);
         (found.0 as u32, near)
     }
 

@@ -6,14 +6,13 @@
 //! directions are kept, and of the rest the distance from their span, which brackets both
 //! distances and spectra; what a bracket does not settle is looked up in all coordinates.
 
-use super::LocalDimension;
 use super::decide;
 use super::frame::Directions;
 use super::packed;
 use super::reach::Reach;
 use super::tree::WIDEST_MOMENTS;
 use crate::principal::PrincipalFrame;
-use crosscap_core::Scalar;
+use crosscap_core::{BallDimension, Scalar};
 
 /// Most centers of a group.
 const MOST_CENTERS: usize = 64;
@@ -209,7 +208,7 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
     ///
     /// Those that `out` has already are left alone.
     #[inline(always)]
-    pub(super) fn dimensions(&mut self, group: Group, dt: f64, out: &mut [Option<LocalDimension>]) {
+    pub(super) fn dimensions(&mut self, group: Group, dt: f64, out: &mut [Option<BallDimension>]) {
         if out.iter().all(Option::is_some) {
             return;
         }
@@ -219,7 +218,10 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
                 self.part(position);
                 let count = self.parts.count;
                 let dimension = if count <= 1 { 0 } else { self.dimension(dt) };
-                *out = Some(LocalDimension { count, dimension });
+                *out = Some(BallDimension {
+                    neighbors: count,
+                    dimension,
+                });
             }
         }
     }

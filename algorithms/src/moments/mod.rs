@@ -21,7 +21,7 @@
 //! **What is exact.** Membership: that of `squared_distance(a, b).sqrt()`, rounded to the scalar of
 //! the cloud, `< eps`; a filter in single precision decides where it provably can, the original
 //! coordinates everywhere else. The dimension: that of
-//! [`PrincipalComponents`], except where a tail share
+//! [`PrincipalComponents`](crate::dimension::PrincipalComponents), except where a tail share
 //! equals the tolerance within rounding. In more than six dimensions balls are summed
 //! in six directions and the rest is only bounded; where the bound leaves the answer open, the
 //! full spectrum is computed. A covariance that would lose more than 1e-10 of its trace to
@@ -43,9 +43,9 @@ mod wide;
 #[cfg(test)]
 mod tests;
 
-use crate::dimension::PrincipalComponents;
 use crate::execute::{self, Execute, Serial};
-use crosscap_core::{Error, PointCloud, Scalar};
+use crate::spectrum::VarianceTolerance;
+use crosscap_core::{BallDimension, Error, PointCloud, Scalar};
 use group::{Ball, Group, Sweep};
 use reach::Reach;
 use settle::{Settled, Settler};
@@ -56,16 +56,6 @@ const LARGEST_WIDE: f64 = 1e150;
 const LARGEST_NARROW: f64 = 1e36;
 /// Groups after which a sweep starts afresh, so that threads that start there find the same.
 const RUN: usize = 64;
-
-/// Number of points and dimension of a ball.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LocalDimension {
-    /// Points in the ball, its center among them.
-    pub count: u32,
-    /// Smallest d for which the variances after the d-th are less than the share dt of all; 0 for
-    /// a point that is alone.
-    pub dimension: u32,
-}
 
 /// Moments of the points in a ball.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -95,7 +85,7 @@ pub struct BallMoments {
 /// let cloud = PointCloud::new(3, rows).unwrap();
 /// let tree = MomentTree::new(&cloud).unwrap();
 /// let found = tree.dimensions(2.0, 0.05, &Serial).unwrap();
-/// assert_eq!((found[210].count, found[210].dimension), (9, 2)); // strict: nobody at distance 2
+/// assert_eq!((found[210].neighbors, found[210].dimension), (9, 2)); // strict: nobody at distance 2
 /// ```
 pub struct MomentTree<'a, S> {
     cloud: &'a PointCloud<S>,
@@ -156,7 +146,7 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
         eps: f64,
         dt: f64,
         execute: &dyn Execute,
-    ) -> Result<Vec<LocalDimension>, Error> {
+    ) -> Result<Vec<BallDimension>, Error> {
         self.decide(eps, dt, false, execute)
     }
 
@@ -171,7 +161,7 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
         eps: f64,
         dt: f64,
         execute: &dyn Execute,
-    ) -> Result<Vec<LocalDimension>, Error> {
+    ) -> Result<Vec<BallDimension>, Error> {
         self.decide(eps, dt, true, execute)
     }
 
@@ -181,8 +171,8 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
         dt: f64,
         settle: bool,
         execute: &dyn Execute,
-    ) -> Result<Vec<LocalDimension>, Error> {
-        PrincipalComponents::<f64>::new(dt)?;
+    ) -> Result<Vec<BallDimension>, Error> {
+        VarianceTolerance::new(dt)?;
         let reach = Reach::new(&self.tree, self.cloud, eps)?;
         let found = if self.tree.n <= 3 {
             self.sweep(&reach, execute, |sweep: &mut Both<'_, S, 8, 3>, g| {
@@ -193,7 +183,7 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
                 dimensions_of(sweep, g, dt, settle)
             })
         };
-        let mut dimensions = vec![LocalDimension::default(); self.cloud.len()];
+        let mut dimensions = vec![BallDimension::default(); self.cloud.len()];
         for (&row, found) in self.tree.order.iter().zip(found.into_iter().flatten()) {
             dimensions[row as usize] = found.unwrap_or_default();
         }
@@ -334,7 +324,7 @@ pub fn dimensions<S: Scalar>(
     eps: f64,
     dt: f64,
     execute: &dyn Execute,
-) -> Result<Vec<LocalDimension>, Error> {
+) -> Result<Vec<BallDimension>, Error> {
     MomentTree::with(cloud, execute)?.dimensions(eps, dt, execute)
 }
 
@@ -352,7 +342,7 @@ fn dimensions_of<S: Scalar, const L: usize, const M: usize>(
     group: Group,
     dt: f64,
     settle: bool,
-) -> Vec<Option<LocalDimension>> {
+) -> Vec<Option<BallDimension>> {
     let mut out = vec![None; (group.end - group.start) as usize];
     #[cfg(target_arch = "x86_64")]
     if std::is_x86_feature_detected!("avx2") {
@@ -374,7 +364,7 @@ fn dimensions_wide<S: Scalar, const L: usize, const M: usize>(
     group: Group,
     dt: f64,
     settle: bool,
-    out: &mut [Option<LocalDimension>],
+    out: &mut [Option<BallDimension>],
 ) {
     dimensions_plain(both, group, dt, settle, out);
 }
@@ -385,7 +375,7 @@ fn dimensions_plain<S: Scalar, const L: usize, const M: usize>(
     group: Group,
     dt: f64,
     settle: bool,
-    out: &mut [Option<LocalDimension>],
+    out: &mut [Option<BallDimension>],
 ) {
     if settle {
         let tree = both.settler.reach().tree;
@@ -397,8 +387,8 @@ fn dimensions_plain<S: Scalar, const L: usize, const M: usize>(
                 Settled::Two(count) => {
                     let own =
                         (node.start - group.start) as usize..(node.end - group.start) as usize;
-                    out[own].fill(Some(LocalDimension {
-                        count,
+                    out[own].fill(Some(BallDimension {
+                        neighbors: count,
                         dimension: 2,
                     }));
                 }
@@ -412,5 +402,5 @@ fn dimensions_plain<S: Scalar, const L: usize, const M: usize>(
 
 /// The dimension test on a spectrum, largest variance first.
 fn dimension_of(variances: &[f64], dt: f64) -> u32 {
-    PrincipalComponents::<f64>::new(dt).map_or(0, |test| test.dimension_of(variances).0 as u32)
+    VarianceTolerance::new(dt).map_or(0, |test| test.dimension_of(variances).0 as u32)
 }

@@ -37,7 +37,9 @@ fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
     for (i, (a, b)) in found.iter().zip(&settled).enumerate() {
         // A ball whose share is the tolerance within rounding is not settled with others.
         assert_eq!(a.dimension, b.dimension, "point {i}, eps {eps}");
-        assert!(a.count == b.count || a.dimension == 2 && a.count.min(b.count) >= 16);
+        assert!(
+            a.neighbors == b.neighbors || a.dimension == 2 && a.neighbors.min(b.neighbors) >= 16
+        );
     }
     let n = cloud.dimension();
     let balls = Mutex::new(vec![BallMoments::default(); cloud.len()]);
@@ -49,7 +51,7 @@ fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
     for i in 0..cloud.len() {
         let rows = scan(cloud, i, eps);
         let at = format!("point {i} of {} in R^{n}, eps {eps}", cloud.len());
-        assert_eq!(found[i].count as usize, rows.len(), "{at}");
+        assert_eq!(found[i].neighbors as usize, rows.len(), "{at}");
         assert_eq!(balls[i].count as usize, rows.len(), "{at}");
         let (dimension, close) = naive(cloud, &rows, dt);
         assert!(
@@ -213,8 +215,8 @@ fn equal_points_alone() {
         for found in dimensions(&cloud, 1e-9, 0.05, &Serial).unwrap() {
             assert_eq!(
                 found,
-                LocalDimension {
-                    count: 500,
+                BallDimension {
+                    neighbors: 500,
                     dimension: 0
                 }
             );
@@ -313,7 +315,7 @@ fn measure<S: Scalar>(name: &str, cloud: &PointCloud<S>, eps: f64) {
     let built = start.elapsed().as_secs_f64();
     let found = tree.dimensions(eps, 0.05, &Serial).unwrap();
     let all = start.elapsed().as_secs_f64();
-    let mean = found.iter().map(|f| f64::from(f.count)).sum::<f64>() / found.len() as f64;
+    let mean = found.iter().map(|f| f64::from(f.neighbors)).sum::<f64>() / found.len() as f64;
     let other = found.iter().filter(|f| f.dimension != 2).count();
     println!(
         "{name}: {} points, {mean:.0} neighbors, {other} not 2-dimensional",
@@ -323,7 +325,7 @@ fn measure<S: Scalar>(name: &str, cloud: &PointCloud<S>, eps: f64) {
     for i in (0..cloud.len()).step_by(cloud.len() / 200) {
         let rows = scan(cloud, i, eps);
         let (dimension, close) = naive(cloud, &rows, 0.05);
-        assert_eq!(found[i].count as usize, rows.len(), "point {i}");
+        assert_eq!(found[i].neighbors as usize, rows.len(), "point {i}");
         assert!(close || found[i].dimension == dimension, "point {i}");
     }
 }

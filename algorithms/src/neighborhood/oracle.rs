@@ -93,4 +93,8 @@ impl<S: Scalar> NeighborhoodOracle for PolicyOracle<'_, S> {
     fn within_of(&self, place: &[S], radius: S, out: &mut Vec<Neighbor<S>>) -> bool {
         self.oracle.within_of(place, radius, out)
     }
+
+    fn name(&self) -> &str {
+        self.oracle.name()
+    }
 }

@@ -1,6 +1,6 @@
 //! The pieces of a mesh in a paragraph of English.
 
-use super::{CrossingAngle, DoubleCurve, Pieces, Sidedness};
+use super::{CrossingAngle, CurveEnd, DoubleCurve, Pieces, Sidedness};
 use std::fmt;
 
 impl fmt::Display for Pieces {
@@ -97,6 +97,28 @@ fn grouped<K: PartialEq, T>(items: impl Iterator<Item = (K, T)>) -> Vec<(K, Vec<
     groups
 }
 
+/// In which pinch points curves end, which all have as many.
+fn stops(curves: &[&DoubleCurve]) -> String {
+    let each = if curves.len() > 1 { ", each" } else { "" };
+    let at_boundary = |c: &&DoubleCurve| c.ends.is_some_and(|e| e.contains(&CurveEnd::Boundary));
+    match curves[0].pinches() {
+        0 => String::new(),
+        1 if curves.iter().all(at_boundary) => {
+            format!("{each} from a pinch point to the boundary")
+        }
+        1 => format!("{each} from a pinch point"),
+        _ => format!("{each} between two pinch points"),
+    }
+}
+
+impl DoubleCurve {
+    /// How many of its ends are pinch points.
+    fn pinches(&self) -> usize {
+        let ends = self.ends.iter().flatten();
+        ends.filter(|&&end| end == CurveEnd::Pinch).count()
+    }
+}
+
 impl Pieces {
     /// What a piece is called: by its name, with a number when there are several of that name.
     fn label(&self, piece: u32) -> String {
@@ -128,7 +150,7 @@ impl Pieces {
         let kinds = grouped(
             self.curves
                 .iter()
-                .map(|c| ((c.circle, c.preimages.clone()), c)),
+                .map(|c| ((c.circle, c.pinches(), c.preimages.clone()), c)),
         );
         kinds
             .iter()
@@ -157,6 +179,7 @@ impl Pieces {
                 format!("{} crosses itself in {what}", self.label(a))
             }
         };
+        text += &stops(curves);
         match curve.preimages[..] {
             [a, b] if curve.circle && a.piece != b.piece => {
                 let each = if many { "each " } else { "" };

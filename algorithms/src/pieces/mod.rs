@@ -21,11 +21,13 @@ mod description;
 mod error;
 mod gluing;
 mod normalization;
+mod reading;
 mod straightness;
 mod surface;
 mod winding;
 
 pub use error::PiecesError;
+pub use reading::Reading;
 pub use straightness::LEAST_MARGIN;
 pub use surface::Surface;
 pub use winding::wound_triangles;
@@ -68,6 +70,7 @@ pub enum Sidedness {
 
 /// A component of what lies over a double curve in the normalization.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[non_exhaustive]
 pub struct Preimage {
     /// Index of the piece that it lies on.
     pub piece: u32,
@@ -93,6 +96,7 @@ pub enum CurveEnd {
 
 /// Angle at which sheets meet, in degrees: 0 to 90 where two of them cross, 0 to 180 where they end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct CrossingAngle {
     /// Mean over the length of the curve.
     pub mean: f64,
@@ -104,6 +108,7 @@ pub struct CrossingAngle {
 
 /// A curve in which two sheets cross. It runs straight through triple points.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct DoubleCurve {
     /// Closed, or an arc.
     pub circle: bool,
@@ -134,6 +139,7 @@ impl DoubleCurve {
 
 /// A curve at which the surface is cut because no two sheets cross in it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Junction {
     /// Closed, or an arc.
     pub circle: bool,
@@ -164,6 +170,7 @@ pub struct BareCurve {
 
 /// A point in which a curve without a surface meets the surface.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct CurveMeeting {
     /// Vertex of the mesh.
     pub vertex: u32,
@@ -175,6 +182,7 @@ pub struct CurveMeeting {
 
 /// A point where three or more sheets cross along double curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct MultiplePoint {
     /// Vertex of the mesh.
     pub vertex: u32,
@@ -184,6 +192,7 @@ pub struct MultiplePoint {
 
 /// A vertex in which sheets touch away from all curves, as two surfaces cross in R^4.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct PointContact {
     /// Vertex of the mesh.
     pub vertex: u32,

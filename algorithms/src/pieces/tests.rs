@@ -357,7 +357,7 @@ fn umbrella_has_a_pinch_point() {
     assert!(
         found
             .to_string()
-            .contains("in one arc, covered twice by one arc")
+            .contains("in one arc from a pinch point to the boundary, covered twice by one arc")
     );
 }
 
@@ -388,6 +388,11 @@ fn roman_surface_is_a_projective_plane() {
         // Half a great circle of the sphere, closed at opposite points.
         assert_eq!(p.sidedness, Some(Sidedness::OneSided));
     }
+    let text = found.to_string();
+    assert!(
+        text.contains("three arcs, each between two pinch points, each covered"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -738,6 +743,24 @@ fn summary_serializes() {
     assert!(!text.contains("normalization"));
 }
 
+#[test]
+fn readings_are_those_of_the_surface() {
+    let reading = |mesh: Mesh| pieces(&mesh).unwrap().reading();
+    // Other triangles, angles and lengths, and the same surface.
+    assert_eq!(reading(two_spheres(0.5, 3)), reading(two_spheres(0.6, 5)));
+    assert_eq!(reading(umbrella(2)), reading(umbrella(3)));
+    let all = [
+        reading(two_spheres(0.5, 3)),
+        reading(umbrella(3)),
+        reading(sphere_and_klein()),
+        reading(band(0.0)),
+        reading(band(1.0)),
+    ];
+    for (k, one) in all.iter().enumerate() {
+        assert!(all[..k].iter().all(|other| other != one), "{one:?}");
+    }
+}
+
 /// What does not depend on names or on the place in space.
 fn profile(found: &Pieces) -> (Vec<String>, Vec<String>, usize) {
     let mut kinds: Vec<String> = found.pieces.iter().map(|p| p.name.clone()).collect();
@@ -796,7 +819,9 @@ proptest! {
         let triangles = mesh.complex.triangles.iter();
         let triangles = triangles.map(|t| t.map(|v| name[v as usize])).collect();
         let other = small(n + 1, places, triangles);
-        prop_assert_eq!(profile(&pieces(&mesh).unwrap()), profile(&pieces(&other).unwrap()));
+        let (one, other) = (pieces(&mesh).unwrap(), pieces(&other).unwrap());
+        prop_assert_eq!(profile(&one), profile(&other));
+        prop_assert_eq!(one.reading(), other.reading());
     }
 
     /// On any complex, however wild, the answer is a list of surfaces, or a typed error.

@@ -26,6 +26,7 @@ const GROWTH: f64 = 8.0;
 /// which the neighborhood is thin: a ball as small as the noise has no normal. Medians over the places leave
 /// creases and crossings out of account.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Noise {
     /// Standard deviation in each direction normal to the surface, unit of the data.
     pub deviation: f64,

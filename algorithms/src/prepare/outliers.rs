@@ -24,6 +24,7 @@ const MOST: f64 = 0.12;
 ///
 /// What is found is taken away and the rest looked at again, until nothing more is found.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Outliers {
     /// Rows, increasing.
     pub rows: Vec<usize>,

@@ -47,6 +47,7 @@ impl Remedies {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Preparation {
     /// Spacing of the points that are kept.
     pub spacing: LocalSpacing,
@@ -129,6 +130,7 @@ impl Preparation {
 
 /// What was found out about a cloud, and what was done about it, in figures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct PreparationSummary {
     /// Median spacing of the points, unit of the data.
     pub spacing: f64,

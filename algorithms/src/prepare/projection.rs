@@ -32,6 +32,7 @@ const UNEXPLAINED: f64 = 2.5;
 /// mixes sheets is worse than none. Two or three rounds, each from where the last one ended. Points do not move along
 /// the surface, so that boundaries stay where they are.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Projection {
     /// The points after the last round, in the order of the rows.
     pub cloud: PointCloud<f64>,

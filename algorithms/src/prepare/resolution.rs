@@ -25,6 +25,7 @@ const COARSE: f64 = 0.05;
 /// are whole numbers of it, it is a step. Rounding to steps of h moves a point by h / sqrt 12 (root mean square)
 /// a coordinate. O(N n log n).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Resolution {
     /// Largest step over the coordinates, unit of the data; that of the number format, about 1e-16
     /// of the largest coordinate, where none is seen.

@@ -19,6 +19,7 @@ use crosscap_core::PointCloud;
 
 /// Places of points that were known by their distances.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Scaled {
     /// One place a point, in the unit of the distances.
     pub places: PointCloud<f64>,

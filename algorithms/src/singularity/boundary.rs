@@ -3,6 +3,7 @@
 use super::envelope::Envelope;
 use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::tolerance::{Tolerance, at_least, vectors};
+use crate::tuning::BoundaryTuning;
 use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
 use nalgebra::{Matrix2, Vector2, Vector3};
 use std::f64::consts::PI;
@@ -19,24 +20,11 @@ use std::f64::consts::PI;
 #[derive(Clone, Copy, Debug)]
 pub struct Boundary {
     tolerance: Tolerance,
+    tuning: BoundaryTuning,
 }
 
-/// Least distance of the center from the middle of the neighborhood, as a share of the radius: it is
-/// 0.42 on a straight boundary.
-const LEAST_SHIFT: f64 = 0.2;
-/// Least share of the variance across the widest direction that the half ball about the center has: it is
-/// 0.28 on a straight boundary, and 0 where the center is on a curve.
-const LEAST_BREADTH: f64 = 0.05;
-/// Points that would have to lie beyond the boundary.
-const LEAST_MISSING: f64 = 10.0;
-/// Greatest curvature of the parabola, in units of one over the radius.
-const MOST_BEND: f64 = 3.0;
 /// Times that the parabola is fitted, each time upright over its own tangent.
 const ROUNDS: usize = 3;
-/// Farthest that a center in the band is moved, in ep: a band's width across and one up or down.
-const LARGEST_STEP: f64 = 1.5;
-/// A point off the boundary tells where it is up to this many ep.
-const WITNESS_REACH: f64 = 3.0;
 /// Strips that the area beyond the boundary is summed over.
 const STRIPS: usize = 64;
 
@@ -49,7 +37,13 @@ impl Boundary {
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
             tolerance: Tolerance::new(dp, ep)?,
+            tuning: BoundaryTuning::MEASURED,
         })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: BoundaryTuning) -> Self {
+        Self { tuning, ..self }
     }
 }
 
@@ -136,13 +130,13 @@ impl SingularityModel for Boundary {
         let count = local.fitted;
         let center = Vector3::from_column_slice(local.point(local.center));
         // The mean is the origin.
-        if center.x.hypot(center.y) < LEAST_SHIFT * local.radius {
+        if center.x.hypot(center.y) < self.tuning.shift * local.radius {
             return Err(Rejection::NoRealSolution);
         }
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
         let breadth = breadth(points, &center, 0.5 * local.radius);
-        if breadth < LEAST_BREADTH {
+        if breadth < self.tuning.breadth {
             return Err(Rejection::EmptyStratum {
                 stratum: 1,
                 found: 0,
@@ -160,13 +154,13 @@ impl SingularityModel for Boundary {
             axes = Axes::new(axes.origin, out);
             envelope = upright(&axes)?;
         }
-        if envelope.bend().abs() * local.radius > MOST_BEND {
+        if envelope.bend().abs() * local.radius > self.tuning.bend {
             return Err(Rejection::NoRealSolution);
         }
         let beyond = area_beyond(&envelope, local.radius);
         let inside = PI * local.radius * local.radius - beyond;
         let missing = count as f64 * beyond / inside.max(f64::MIN_POSITIVE);
-        if missing < LEAST_MISSING {
+        if missing < self.tuning.missing {
             return Err(Rejection::EmptyStratum {
                 stratum: 0,
                 found: 0,
@@ -205,11 +199,11 @@ impl SingularityModel for Boundary {
         let place = Vector3::new(x, y, -sheet.height(&below).0);
         let offset = (place - center).norm();
         // In the band of the curve and on the sheet, the center is next to its place.
-        if labels[local.center] == 0 && offset > LARGEST_STEP * self.tolerance.ep {
+        if labels[local.center] == 0 && offset > self.tuning.step * self.tolerance.ep {
             return Err(Rejection::NoRealSolution);
         }
         let (moved, center_offset) =
-            if labels[local.center] == 0 || offset < WITNESS_REACH * self.tolerance.ep {
+            if labels[local.center] == 0 || offset < self.tuning.witness * self.tolerance.ep {
                 (place, offset)
             } else {
                 (center, f64::INFINITY)

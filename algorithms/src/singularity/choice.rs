@@ -1,9 +1,10 @@
 //! Singularity models by name.
 
 use super::{
-    BareCurve, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, TriplePoint, TwoPlanes,
-    YJunction,
+    BareCurve, Boundary, CrossingEnd, CurveOnSheet, CurveThroughSheet, IsolatedCrossing,
+    PinchPoint, TriplePoint, TwoPlanes, YJunction,
 };
+use crate::tuning::ModelTuning;
 use crosscap_core::{Error, SingularityModel};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -38,6 +39,10 @@ pub enum ModelName {
     CurveThroughSheet,
     /// [`CurveOnSheet`].
     CurveOnSheet,
+    /// [`PinchPoint`].
+    PinchPoint,
+    /// [`CrossingEnd`].
+    CrossingEnd,
 }
 
 /// Rounds of the refinement by equation (5).
@@ -45,7 +50,7 @@ const REFINEMENT_ROUNDS: usize = 20;
 
 impl ModelName {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::TwoPlanes,
         Self::RefinedTwoPlanes,
         Self::Boundary,
@@ -55,10 +60,12 @@ impl ModelName {
         Self::Curve,
         Self::CurveThroughSheet,
         Self::CurveOnSheet,
+        Self::PinchPoint,
+        Self::CrossingEnd,
     ];
 
     /// Those that compete where the user leaves the choice to the program.
-    pub const AUTO: [Self; 8] = [
+    pub const AUTO: [Self; 10] = [
         Self::TwoPlanes,
         Self::Boundary,
         Self::YJunction,
@@ -67,6 +74,8 @@ impl ModelName {
         Self::Curve,
         Self::CurveThroughSheet,
         Self::CurveOnSheet,
+        Self::PinchPoint,
+        Self::CrossingEnd,
     ];
 
     /// The name on the command line and in reports.
@@ -81,6 +90,8 @@ impl ModelName {
             Self::Curve => "curve",
             Self::CurveThroughSheet => "curve-through-sheet",
             Self::CurveOnSheet => "curve-on-sheet",
+            Self::PinchPoint => "pinch-point",
+            Self::CrossingEnd => "crossing-end",
         }
     }
 
@@ -89,20 +100,41 @@ impl ModelName {
     /// # Errors
     /// [`Error::Parameter`] unless both are positive and finite.
     pub fn model(self, dp: f64, ep: f64) -> Result<Box<dyn SingularityModel>, Error> {
+        self.tuned(dp, ep, &ModelTuning::MEASURED)
+    }
+
+    /// The same, believed under other conditions.
+    ///
+    /// # Errors
+    /// Those of [`ModelName::model`].
+    pub fn tuned(
+        self,
+        dp: f64,
+        ep: f64,
+        tuning: &ModelTuning,
+    ) -> Result<Box<dyn SingularityModel>, Error> {
         Ok(match self {
-            Self::TwoPlanes => Box::new(TwoPlanes::new(dp, ep)?),
+            Self::TwoPlanes => Box::new(TwoPlanes::new(dp, ep)?.tuned(tuning.two_planes)),
             Self::RefinedTwoPlanes => {
-                let mut model = TwoPlanes::new(dp, ep)?;
+                let mut model = TwoPlanes::new(dp, ep)?.tuned(tuning.two_planes);
                 model.refinement_rounds = REFINEMENT_ROUNDS;
                 Box::new(model)
             }
-            Self::Boundary => Box::new(Boundary::new(dp, ep)?),
-            Self::YJunction => Box::new(YJunction::new(dp, ep)?),
-            Self::TriplePoint => Box::new(TriplePoint::new(dp, ep)?),
-            Self::IsolatedCrossing => Box::new(IsolatedCrossing::new(dp, ep)?),
+            Self::Boundary => Box::new(Boundary::new(dp, ep)?.tuned(tuning.boundary)),
+            Self::YJunction => Box::new(YJunction::new(dp, ep)?.tuned(tuning.y_junction)),
+            Self::TriplePoint => Box::new(TriplePoint::new(dp, ep)?.tuned(tuning.triple_point)),
+            Self::IsolatedCrossing => {
+                Box::new(IsolatedCrossing::new(dp, ep)?.tuned(tuning.isolated_crossing))
+            }
             Self::Curve => Box::new(BareCurve::new(dp, ep)?),
-            Self::CurveThroughSheet => Box::new(CurveThroughSheet::new(dp, ep)?),
-            Self::CurveOnSheet => Box::new(CurveOnSheet::new(dp, ep)?),
+            Self::CurveThroughSheet => {
+                Box::new(CurveThroughSheet::new(dp, ep)?.tuned(tuning.curve_and_sheet))
+            }
+            Self::CurveOnSheet => {
+                Box::new(CurveOnSheet::new(dp, ep)?.tuned(tuning.curve_and_sheet))
+            }
+            Self::PinchPoint => Box::new(PinchPoint::new(dp, ep)?),
+            Self::CrossingEnd => Box::new(CrossingEnd::new(dp, ep)?),
         })
     }
 }

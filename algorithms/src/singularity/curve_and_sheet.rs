@@ -6,6 +6,7 @@ use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::sheets::patch_over;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
+use crate::tuning::CurveAndSheetTuning;
 use crosscap_core::{
     Decomposition, Error, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
 };
@@ -19,7 +20,7 @@ use std::cell::RefCell;
 /// off it a curve. The point is where the curve meets the patch, by Newton's method.
 #[derive(Clone, Copy, Debug)]
 pub struct CurveThroughSheet {
-    tolerance: Tolerance,
+    conditions: Conditions,
 }
 
 /// A curve that ends on a sheet: a point, one arc without triangles, one cell.
@@ -27,24 +28,8 @@ pub struct CurveThroughSheet {
 /// Fitted like [`CurveThroughSheet`]; the arc is on one side of the sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct CurveOnSheet {
-    tolerance: Tolerance,
+    conditions: Conditions,
 }
-
-/// Points within this share of the radius of a plane belong to it while it is looked for.
-const PLANE_TOLERANCE: f64 = 0.1;
-/// Farthest that the point may be, as a share of the radius.
-const REACH: f64 = 0.95;
-/// Least sine of the angle between curve and sheet.
-const LEAST_SINE: f64 = 0.3;
-/// The sheet is fitted to points farther than this many ep from the curve.
-const CLEAR: f64 = 1.5;
-/// Greatest gradient of the height above the sheet, 1 where it is parallel to its plane: a steeper patch
-/// has bent to points that are on no sheet, and distances from it mean nothing.
-const STEEPEST: f64 = 2.0;
-/// Fewest points of an arc.
-const LEAST_ARC: usize = 2;
-/// A curve is at least this many ep long.
-const LEAST_LENGTH: f64 = 3.0;
 
 impl CurveThroughSheet {
     /// Model with fit tolerance `dp` and curve tolerance `ep`, unit of the data: a point nearer than
@@ -54,8 +39,14 @@ impl CurveThroughSheet {
     /// [`Error::Parameter`] unless both are positive and finite.
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
-            tolerance: Tolerance::new(dp, ep)?,
+            conditions: Conditions::new(dp, ep)?,
         })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(mut self, tuning: CurveAndSheetTuning) -> Self {
+        self.conditions.tuning = tuning;
+        self
     }
 }
 
@@ -67,7 +58,29 @@ impl CurveOnSheet {
     /// [`Error::Parameter`] unless both are positive and finite.
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
+            conditions: Conditions::new(dp, ep)?,
+        })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(mut self, tuning: CurveAndSheetTuning) -> Self {
+        self.conditions.tuning = tuning;
+        self
+    }
+}
+
+/// What a fit must satisfy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Conditions {
+    tolerance: Tolerance,
+    tuning: CurveAndSheetTuning,
+}
+
+impl Conditions {
+    fn new(dp: f64, ep: f64) -> Result<Self, Error> {
+        Ok(Self {
             tolerance: Tolerance::new(dp, ep)?,
+            tuning: CurveAndSheetTuning::MEASURED,
         })
     }
 }
@@ -100,15 +113,15 @@ struct Kept {
     fitted: usize,
     center: usize,
     radius: f64,
-    tolerance: Tolerance,
+    conditions: Conditions,
     fit: Result<Fit, Rejection>,
 }
 
 impl Kept {
-    fn is_of(&self, local: &LocalPoints<'_>, tolerance: &Tolerance) -> bool {
+    fn is_of(&self, local: &LocalPoints<'_>, conditions: &Conditions) -> bool {
         (self.fitted, self.center) == (local.fitted, local.center)
             && self.radius == local.radius
-            && self.tolerance == *tolerance
+            && self.conditions == *conditions
             && self.coordinates == local.coordinates
     }
 }
@@ -121,26 +134,27 @@ thread_local! {
 }
 
 impl Fit {
-    fn of(local: &LocalPoints<'_>, tolerance: &Tolerance) -> Result<Self, Rejection> {
+    fn of(local: &LocalPoints<'_>, conditions: &Conditions) -> Result<Self, Rejection> {
         LAST.with_borrow_mut(|last| {
-            let kept = last.take().filter(|kept| kept.is_of(local, tolerance));
+            let kept = last.take().filter(|kept| kept.is_of(local, conditions));
             if let Some(kept) = kept {
                 return kept.fit;
             }
-            let fit = Self::new(local, tolerance);
+            let fit = Self::new(local, conditions);
             *last = Some(Kept {
                 coordinates: local.coordinates.to_vec(),
                 fitted: local.fitted,
                 center: local.center,
                 radius: local.radius,
-                tolerance: *tolerance,
+                conditions: *conditions,
                 fit: fit.clone(),
             });
             fit
         })
     }
 
-    fn new(local: &LocalPoints<'_>, tolerance: &Tolerance) -> Result<Self, Rejection> {
+    fn new(local: &LocalPoints<'_>, conditions: &Conditions) -> Result<Self, Rejection> {
+        let Conditions { tolerance, tuning } = conditions;
         at_least(PATCH_POINTS + STRAIGHT_POINTS, local)?;
         let (count, ep) = (local.fitted, tolerance.ep);
         let all: Vec<Vector3<f64>> = vectors(local);
@@ -165,7 +179,7 @@ impl Fit {
         for plane in &mut found {
             plane.normals.truncate(1);
         }
-        let plane = greedy(points, &found, 1, PLANE_TOLERANCE * local.radius)
+        let plane = greedy(points, &found, 1, tuning.plane * local.radius)
             .and_then(|mut planes| planes.pop())
             .ok_or(Rejection::NoRealSolution)?;
         let mut sheet = patch_over(&plane);
@@ -173,7 +187,7 @@ impl Fit {
         for round in 0..4 {
             // The first plane may be tilted by points of the curve: its sheet is taken thicker.
             let thickness = if round == 0 {
-                ep.max(PLANE_TOLERANCE * local.radius)
+                ep.max(tuning.plane * local.radius)
             } else {
                 ep
             };
@@ -181,7 +195,7 @@ impl Fit {
             let near: Vec<Vector3<f64>> = points
                 .iter()
                 .filter(|x| {
-                    let clear = |c: &QuadraticCurve| (c.foot(x) - **x).norm() > CLEAR * ep;
+                    let clear = |c: &QuadraticCurve| (c.foot(x) - **x).norm() > tuning.clear * ep;
                     sheet.signed_distance(x).abs() < thickness && curve.as_ref().is_none_or(clear)
                 })
                 .copied()
@@ -196,7 +210,7 @@ impl Fit {
                     found: near.len(),
                 });
             }
-            let steepest = |x: &Vector3<f64>| sheet.height(x).1.norm() > STEEPEST;
+            let steepest = |x: &Vector3<f64>| sheet.height(x).1.norm() > tuning.steepest;
             if near.iter().any(steepest) {
                 return Err(Rejection::NoRealSolution);
             }
@@ -230,7 +244,7 @@ impl Fit {
             let x = curve.at(t);
             let (value, gradient) = sheet.height(&x);
             let slope = gradient.dot(&curve.tangent(t));
-            if slope.abs() < LEAST_SINE * gradient.norm() {
+            if slope.abs() < tuning.sine * gradient.norm() {
                 return Err(Rejection::NoRealSolution);
             }
             t -= value / slope;
@@ -240,7 +254,7 @@ impl Fit {
             }
         }
         let apex = curve.at(t);
-        if height > 1e-6 * local.radius || (apex - center).norm() > REACH * local.radius {
+        if height > 1e-6 * local.radius || (apex - center).norm() > tuning.reach * local.radius {
             return Err(Rejection::NoRealSolution);
         }
         let mut labels = vec![0u8; all.len()];
@@ -267,7 +281,7 @@ impl Fit {
         let lengths = beside.iter().map(|x| curve.parameter(x));
         let span = lengths.clone().fold(f64::NEG_INFINITY, f64::max)
             - lengths.fold(f64::INFINITY, f64::min);
-        if span < LEAST_LENGTH * ep {
+        if span < tuning.length * ep {
             return Err(Rejection::NoRealSolution);
         }
         Ok(Self {
@@ -331,8 +345,8 @@ impl SingularityModel for CurveThroughSheet {
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
-        let fit = Fit::of(local, &self.tolerance)?;
-        if let Some(side) = (0..2).find(|&side| fit.arcs[side] < LEAST_ARC) {
+        let fit = Fit::of(local, &self.conditions)?;
+        if let Some(side) = (0..2).find(|&side| fit.arcs[side] < self.conditions.tuning.arc) {
             return Err(Rejection::EmptyStratum {
                 stratum: 1 + side,
                 found: fit.arcs[side],
@@ -364,14 +378,14 @@ impl SingularityModel for CurveOnSheet {
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
-        let fit = Fit::of(local, &self.tolerance)?;
-        if fit.arcs[0].max(fit.arcs[1]) < LEAST_ARC {
+        let fit = Fit::of(local, &self.conditions)?;
+        if fit.arcs[0].max(fit.arcs[1]) < self.conditions.tuning.arc {
             return Err(Rejection::EmptyStratum {
                 stratum: 1,
                 found: fit.arcs[0].max(fit.arcs[1]),
             });
         }
-        if fit.arcs[0].min(fit.arcs[1]) >= LEAST_ARC {
+        if fit.arcs[0].min(fit.arcs[1]) >= self.conditions.tuning.arc {
             return Err(Rejection::NoRealSolution);
         }
         Ok(fit.into_decomposition(local, 1, [0, 1, 1, 2]))

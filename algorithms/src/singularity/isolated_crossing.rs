@@ -5,6 +5,7 @@ use super::patch::PATCH_POINTS;
 use super::sheet_in_four::SheetInFour;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
+use crate::tuning::IsolatedCrossingTuning;
 use crosscap_core::{
     Decomposition, Error, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
 };
@@ -21,20 +22,9 @@ use nalgebra::{Matrix4, Vector4};
 #[derive(Clone, Copy, Debug)]
 pub struct IsolatedCrossing {
     tolerance: Tolerance,
+    tuning: IsolatedCrossingTuning,
 }
 
-/// Points within this share of the radius of a plane belong to it while planes are looked for.
-const PLANE_TOLERANCE: f64 = 0.15;
-/// Least share of the points on each sheet.
-const LEAST_SHEET_SHARE: f64 = 0.06;
-/// Least product of the sines of the two angles between the sheets.
-const LEAST_DETERMINANT: f64 = 0.1;
-/// The crossing lies within this share of the radius.
-const REACH: f64 = 0.9;
-/// Least variance of the points in the fourth of the principal directions, as a share of the squared radius.
-/// The smallest second sheet that is accepted, with 6 % of the points at the least angle and the greatest distance, has
-/// three times as much off the first one; two sheets in a space of three dimensions, which cross in curves, have none.
-const LEAST_FOURTH: f64 = 1e-5;
 /// Rounds of fitting sheets and assigning points anew.
 const ROUNDS: usize = 3;
 
@@ -47,7 +37,13 @@ impl IsolatedCrossing {
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
             tolerance: Tolerance::new(dp, ep)?,
+            tuning: IsolatedCrossingTuning::MEASURED,
         })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: IsolatedCrossingTuning) -> Self {
+        Self { tuning, ..self }
     }
 }
 
@@ -66,11 +62,16 @@ fn equations(sheets: &[SheetInFour; 2], x: &Vector4<f64>) -> (Vector4<f64>, Matr
 }
 
 /// The point in which two sheets meet.
-fn meet(sheets: &[SheetInFour; 2], start: Vector4<f64>, reach: f64) -> Option<Vector4<f64>> {
+fn meet(
+    sheets: &[SheetInFour; 2],
+    start: Vector4<f64>,
+    reach: f64,
+    least_determinant: f64,
+) -> Option<Vector4<f64>> {
     let mut x = start;
     for _ in 0..20 {
         let (values, rows) = equations(sheets, &x);
-        if rows.determinant().abs() < LEAST_DETERMINANT {
+        if rows.determinant().abs() < least_determinant {
             return None;
         }
         let step = rows.lu().solve(&values)?;
@@ -100,7 +101,7 @@ impl SingularityModel for IsolatedCrossing {
         let ep = self.tolerance.ep;
         // The mean is the origin.
         let fourth: f64 = (0..count).map(|k| local.point(k)[3].powi(2)).sum();
-        if fourth < LEAST_FOURTH * local.radius.powi(2) * count as f64 {
+        if fourth < self.tuning.fourth * local.radius.powi(2) * count as f64 {
             return Err(Rejection::NoRealSolution);
         }
         let all: Vec<Vector4<f64>> = vectors(local);
@@ -108,7 +109,7 @@ impl SingularityModel for IsolatedCrossing {
         let quadrics =
             Vanishing::fit(points, 2, 4, local.radius).ok_or(Rejection::NoRealSolution)?;
         let found = candidates(points, |x, out| quadrics.gradients(x, out));
-        let planes = greedy(points, &found, 2, PLANE_TOLERANCE * local.radius)
+        let planes = greedy(points, &found, 2, self.tuning.plane * local.radius)
             .ok_or(Rejection::NoRealSolution)?;
         let mut sheets = [
             SheetInFour::plane(&planes[0]),
@@ -131,7 +132,14 @@ impl SingularityModel for IsolatedCrossing {
             owner = assign(&sheets);
         }
         let center = all[local.center];
-        let apex = meet(&sheets, center, REACH * local.radius).ok_or(Rejection::NoRealSolution)?;
+        let tuning = &self.tuning;
+        let apex = meet(
+            &sheets,
+            center,
+            tuning.reach * local.radius,
+            tuning.determinant,
+        )
+        .ok_or(Rejection::NoRealSolution)?;
         let mut labels = vec![0u8; all.len()];
         let mut held = [0usize; 2];
         let mut sum = 0.0;
@@ -149,7 +157,7 @@ impl SingularityModel for IsolatedCrossing {
             }
         }
         let residual = self.tolerance.residual(sum, count)?;
-        let least = (LEAST_SHEET_SHARE * count as f64).max(PATCH_POINTS as f64 / 2.0);
+        let least = (self.tuning.sheet_share * count as f64).max(PATCH_POINTS as f64 / 2.0);
         if let Some(stratum) = (0..2).find(|&s| (held[s] as f64) < least) {
             return Err(Rejection::EmptyStratum {
                 stratum: stratum + 1,

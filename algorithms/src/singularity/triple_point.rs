@@ -5,6 +5,7 @@ use super::patch::PATCH_POINTS;
 use super::sheets::Sheets;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
+use crate::tuning::TriplePointTuning;
 use crosscap_core::{
     Decomposition, Error, Link, LinkKind, LocalPoints, Located, Rejection, SingularityModel,
     Stratum,
@@ -20,18 +21,8 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Clone, Copy, Debug)]
 pub struct TriplePoint {
     tolerance: Tolerance,
+    tuning: TriplePointTuning,
 }
-
-/// Points within this share of the radius of a plane belong to it while planes are looked for.
-const PLANE_TOLERANCE: f64 = 0.12;
-/// Least share of the points that a sheet must hold.
-const LEAST_SHEET_SHARE: f64 = 0.06;
-/// Least determinant of the three unit normals.
-const LEAST_DETERMINANT: f64 = 0.15;
-/// The triple point lies within this share of the radius.
-const REACH: f64 = 0.85;
-/// Cells that must hold points, of twelve.
-const LEAST_CELLS: usize = 8;
 
 /// Stratum of the arc on which sheet `k` is crossed by none: the curve of the two others, on
 /// the side of sheet k where its distance is negative or not.
@@ -53,7 +44,13 @@ impl TriplePoint {
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
             tolerance: Tolerance::new(dp, ep)?,
+            tuning: TriplePointTuning::MEASURED,
         })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: TriplePointTuning) -> Self {
+        Self { tuning, ..self }
     }
 }
 
@@ -82,20 +79,20 @@ impl SingularityModel for TriplePoint {
         let points = &all[..count];
         let cubic = Vanishing::fit(points, 3, 1, local.radius).ok_or(Rejection::NoRealSolution)?;
         let found = candidates(points, |x, out| cubic.gradients(x, out));
-        let planes = greedy(points, &found, 3, PLANE_TOLERANCE * local.radius)
+        let planes = greedy(points, &found, 3, self.tuning.plane * local.radius)
             .ok_or(Rejection::NoRealSolution)?;
         let normals = Matrix3::from_columns(&[
             planes[0].normals[0],
             planes[1].normals[0],
             planes[2].normals[0],
         ]);
-        if normals.determinant().abs() < LEAST_DETERMINANT {
+        if normals.determinant().abs() < self.tuning.determinant {
             return Err(Rejection::NoRealSolution);
         }
         let sheets = Sheets::new(&planes, &all, count, local.radius, |_, d, _| d);
         let center = all[local.center];
         let apex = sheets
-            .meet(&[0, 1, 2], 3, center, REACH * local.radius)
+            .meet(&[0, 1, 2], 3, center, self.tuning.reach * local.radius)
             .ok_or(Rejection::NoRealSolution)?;
 
         let mut labels = vec![0u8; all.len()];
@@ -118,7 +115,7 @@ impl SingularityModel for TriplePoint {
             }
         }
         let residual = self.tolerance.residual(sum, count)?;
-        let least = (LEAST_SHEET_SHARE * count as f64).max(PATCH_POINTS as f64 / 2.0);
+        let least = (self.tuning.sheet_share * count as f64).max(PATCH_POINTS as f64 / 2.0);
         for k in 0..3 {
             let own: usize = held[usize::from(cell(k, false, false))..][..4].iter().sum();
             if (own as f64) < least {
@@ -128,7 +125,7 @@ impl SingularityModel for TriplePoint {
                 });
             }
         }
-        if held[7..].iter().filter(|&&h| h > 0).count() < LEAST_CELLS {
+        if held[7..].iter().filter(|&&h| h > 0).count() < self.tuning.cells {
             let stratum = 7 + held[7..].iter().position(|&h| h == 0).unwrap_or(0);
             return Err(Rejection::EmptyStratum { stratum, found: 0 });
         }
@@ -139,7 +136,10 @@ impl SingularityModel for TriplePoint {
                 arc @ 1..=6 => {
                     let third = usize::from((arc - 1) / 2);
                     let pair = [(third + 1) % 3, (third + 2) % 3];
-                    (1, Some(sheets.meet(&pair, 2, x, REACH * local.radius)?))
+                    (
+                        1,
+                        Some(sheets.meet(&pair, 2, x, self.tuning.reach * local.radius)?),
+                    )
                 }
                 _ => (2, None),
             };

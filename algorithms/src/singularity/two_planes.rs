@@ -2,6 +2,7 @@
 
 use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::tolerance::{Tolerance, at_least, vectors};
+use crate::tuning::TwoPlanesTuning;
 use crosscap_core::{
     Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
@@ -258,28 +259,12 @@ const fn position([i, j, k]: [usize; 3]) -> usize {
 #[derive(Clone, Copy, Debug)]
 pub struct TwoPlanes {
     tolerance: Tolerance,
+    tuning: TwoPlanesTuning,
     /// Rounds of the refinement by equation (5); 0 is the direct estimate alone.
     pub refinement_rounds: usize,
     /// Whether sheets are curved (quadratic patches) or the planes themselves, as in the paper.
     pub curved: bool,
 }
-
-/// Share of the points that three of the four cells must hold.
-const LEAST_CELL_SHARE: f64 = 0.03;
-/// Points of a sheet spread in two directions: the lesser variance is at least this share of the
-/// greater, or they are a curve, which lies in many planes.
-const LEAST_NARROWNESS: f64 = 0.01;
-/// Greatest share of the points farther than ep from both sheets: more are a third sheet, which
-/// would bend the two that are fitted.
-const MOST_ASTRAY: f64 = 0.03;
-/// Farthest that a center is moved, as a share of the radius.
-const LARGEST_STEP: f64 = 0.6;
-/// Three cells have a point this close to the crossing, as a share of the radius.
-const SUPPORT_REACH: f64 = 0.6;
-/// A point off the curve tells where the curve is up to this many ep.
-const WITNESS_REACH: f64 = 3.0;
-/// Patches that meet at a smaller angle (sine) do not locate a curve.
-const LEAST_SINE: f64 = 0.15;
 
 impl TwoPlanes {
     /// Model with fit tolerance `dp` (root mean squared distance of the points to the nearer sheet,
@@ -291,9 +276,15 @@ impl TwoPlanes {
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
             tolerance: Tolerance::new(dp, ep)?,
+            tuning: TwoPlanesTuning::MEASURED,
             refinement_rounds: 0,
             curved: true,
         })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: TwoPlanesTuning) -> Self {
+        Self { tuning, ..self }
     }
 
     /// Fits planes, then patches, and labels all points.
@@ -365,13 +356,13 @@ impl TwoPlanes {
             }
         }
         let residual = self.tolerance.residual(sum, count)?;
-        if self.curved && astray as f64 > MOST_ASTRAY * count as f64 {
+        if self.curved && astray as f64 > self.tuning.astray * count as f64 {
             return Err(Rejection::PoorFit {
                 residual,
                 limit: ep,
             });
         }
-        let least = (LEAST_CELL_SHARE * (count - held[0]) as f64).max(3.0);
+        let least = (self.tuning.cell_share * (count - held[0]) as f64).max(3.0);
         // One cell may hold less, where the sample has a hole; none may be empty.
         let mut cells = [1, 2, 3, 4];
         cells.sort_by_key(|&c| held[c]);
@@ -392,11 +383,12 @@ impl TwoPlanes {
             let own = (0..count)
                 .filter(|&k| labels[k] != 0 && nearer(&distances, k) == own)
                 .map(|k| points[k]);
-            if narrowness(own, &tangent, &across) < LEAST_NARROWNESS {
+            if narrowness(own, &tangent, &across) < self.tuning.narrowness {
                 return Err(Rejection::NoRealSolution);
             }
         }
         Ok(Sheets {
+            tuning: self.tuning,
             ep,
             radius: local.radius,
             all,
@@ -410,6 +402,7 @@ impl TwoPlanes {
 
 /// Two sheets fitted to a neighborhood.
 struct Sheets {
+    tuning: TwoPlanesTuning,
     ep: f64,
     radius: f64,
     all: Vec<Vector3<f64>>,
@@ -425,10 +418,11 @@ impl Sheets {
         let x = self.all[row];
         let singular = self.labels[row] == 0;
         let (points, labels) = (&self.all[..self.fitted], &self.labels[..self.fitted]);
-        let reached = meet(&self.sheets, x, LARGEST_STEP * self.radius)
-            .filter(|place| supported(place, points, labels, self.radius));
+        let tuning = &self.tuning;
+        let reached = meet(&self.sheets, x, tuning.step * self.radius, tuning.sine)
+            .filter(|place| supported(place, points, labels, tuning.support * self.radius));
         let (place, offset) = match reached {
-            Some(place) if singular || (place - x).norm() < WITNESS_REACH * self.ep => {
+            Some(place) if singular || (place - x).norm() < tuning.witness * self.ep => {
                 (place, (place - x).norm())
             }
             None if singular => return None,
@@ -464,13 +458,13 @@ fn narrowness(
 /// Whether the data show a crossing at `place`: some point in the band and points of three
 /// cells close by. Patches also cross where they are mere extrapolation; one cell may have a hole
 /// in its sample there.
-fn supported(place: &Vector3<f64>, points: &[Vector3<f64>], labels: &[u8], radius: f64) -> bool {
+fn supported(place: &Vector3<f64>, points: &[Vector3<f64>], labels: &[u8], reach: f64) -> bool {
     let mut nearest = [f64::INFINITY; 5];
     for (x, &label) in points.iter().zip(labels) {
         let n = &mut nearest[label as usize];
         *n = n.min((x - place).norm());
     }
-    let close = |d: &f64| *d < SUPPORT_REACH * radius;
+    let close = |d: &f64| *d < reach;
     close(&nearest[0]) && nearest[1..].iter().filter(|d| close(d)).count() >= 3
 }
 
@@ -516,16 +510,21 @@ impl SingularityModel for TwoPlanes {
 }
 
 /// The point nearest to `start`, to first order, in which two patches meet: Newton with
-/// steps of least norm. `None` when it wanders farther than `reach` or the patches are
-/// nearly parallel there.
-fn meet(sheets: &[QuadraticPatch; 2], start: Vector3<f64>, reach: f64) -> Option<Vector3<f64>> {
+/// steps of least norm. `None` when it wanders farther than `reach` or the patches meet at an angle with
+/// a smaller sine there.
+fn meet(
+    sheets: &[QuadraticPatch; 2],
+    start: Vector3<f64>,
+    reach: f64,
+    least_sine: f64,
+) -> Option<Vector3<f64>> {
     let mut x = start;
     for _ in 0..12 {
         let (f, a) = sheets[0].height(&x);
         let (g, b) = sheets[1].height(&x);
         let (aa, ab, bb) = (a.dot(&a), a.dot(&b), b.dot(&b));
         let determinant = aa * bb - ab * ab;
-        if determinant < LEAST_SINE * LEAST_SINE * aa * bb {
+        if determinant < least_sine * least_sine * aa * bb {
             return None;
         }
         let alpha = (f * bb - g * ab) / determinant;

@@ -5,6 +5,7 @@ use super::patch::PATCH_POINTS;
 use super::sheets::Sheets;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
+use crate::tuning::YJunctionTuning;
 use crosscap_core::{
     Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
@@ -19,24 +20,8 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Clone, Copy, Debug)]
 pub struct YJunction {
     tolerance: Tolerance,
+    tuning: YJunctionTuning,
 }
-
-/// Points within this share of the radius of a plane belong to it while planes are looked for.
-const PLANE_TOLERANCE: f64 = 0.12;
-/// Greatest part of the normals along the curve, as a mean square: they lie in one plane.
-const MOST_ALONG: f64 = 0.05;
-/// Two sheets meet at this angle (sine) at least.
-const LEAST_SINE: f64 = 0.2;
-/// Greatest share of the points of a plane on the half that is not there.
-const MOST_BEYOND: f64 = 0.2;
-/// Least share of the points in each cell.
-const LEAST_CELL_SHARE: f64 = 0.04;
-/// Farthest that a center is moved, as a share of the radius.
-const LARGEST_STEP: f64 = 0.6;
-/// Each cell has a point this close to the junction, as a share of the radius.
-const SUPPORT_REACH: f64 = 0.6;
-/// A point off the curve tells where the curve is up to this many ep.
-const WITNESS_REACH: f64 = 3.0;
 
 impl YJunction {
     /// Model with fit tolerance `dp` and curve tolerance `ep`, unit of the data: a point nearer than
@@ -47,7 +32,13 @@ impl YJunction {
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
             tolerance: Tolerance::new(dp, ep)?,
+            tuning: YJunctionTuning::MEASURED,
         })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: YJunctionTuning) -> Self {
+        Self { tuning, ..self }
     }
 }
 
@@ -59,7 +50,12 @@ struct Book {
 
 impl Book {
     /// `None` for planes that have no line in common, or of which both halves are there.
-    fn of(planes: &[Flat<3>], points: &[Vector3<f64>], tolerance: f64) -> Option<Self> {
+    fn of(
+        planes: &[Flat<3>],
+        points: &[Vector3<f64>],
+        tolerance: f64,
+        tuning: &YJunctionTuning,
+    ) -> Option<Self> {
         let mut spread = Matrix3::zeros();
         let mut right = Vector3::zeros();
         for plane in planes {
@@ -69,13 +65,13 @@ impl Book {
         }
         for (a, b) in [(0, 1), (0, 2), (1, 2)] {
             let sine = planes[a].normals[0].cross(&planes[b].normals[0]).norm();
-            if sine < LEAST_SINE {
+            if sine < tuning.sine {
                 return None;
             }
         }
         let eigen = spread.symmetric_eigen();
         let least = eigen.eigenvalues.imin();
-        if eigen.eigenvalues[least] > MOST_ALONG {
+        if eigen.eigenvalues[least] > tuning.along {
             return None;
         }
         let along: Vector3<f64> = eigen.eigenvectors.column(least).into();
@@ -102,7 +98,7 @@ impl Book {
                     }
                 }
             }
-            if ahead.min(behind) as f64 > MOST_BEYOND * (ahead + behind) as f64 {
+            if ahead.min(behind) as f64 > tuning.beyond * (ahead + behind) as f64 {
                 return None;
             }
             pages[k] = if ahead >= behind { across } else { -across };
@@ -139,9 +135,10 @@ impl SingularityModel for YJunction {
         let points = &all[..count];
         let cubic = Vanishing::fit(points, 3, 1, local.radius).ok_or(Rejection::NoRealSolution)?;
         let found = candidates(points, |x, out| cubic.gradients(x, out));
-        let tolerance = PLANE_TOLERANCE * local.radius;
+        let tuning = &self.tuning;
+        let tolerance = tuning.plane * local.radius;
         let planes = greedy(points, &found, 3, tolerance).ok_or(Rejection::NoRealSolution)?;
-        let book = Book::of(&planes, points, tolerance).ok_or(Rejection::NoRealSolution)?;
+        let book = Book::of(&planes, points, tolerance, tuning).ok_or(Rejection::NoRealSolution)?;
         let sheets = Sheets::new(&planes, &all, count, local.radius, |k, d, x| {
             book.distance(k, d, x)
         });
@@ -160,7 +157,7 @@ impl SingularityModel for YJunction {
             }
         }
         let residual = self.tolerance.residual(sum, count)?;
-        let least = (LEAST_CELL_SHARE * (count - held[0]) as f64).max(3.0);
+        let least = (tuning.cell_share * (count - held[0]) as f64).max(3.0);
         if let Some(stratum) = (1..4).find(|&c| (held[c] as f64) < least) {
             return Err(Rejection::EmptyStratum {
                 stratum,
@@ -175,14 +172,14 @@ impl SingularityModel for YJunction {
             }
             nearest[1..]
                 .iter()
-                .all(|&d| d < SUPPORT_REACH * local.radius)
+                .all(|&d| d < tuning.support * local.radius)
         };
         let locate = |k: usize| -> Option<Located> {
             let x = all[k];
             let on_curve = labels[k] == 0;
             let place = sheets
-                .meet(&[0, 1, 2], 2, x, LARGEST_STEP * local.radius)
-                .filter(|p| on_curve || (p - x).norm() < WITNESS_REACH * ep)
+                .meet(&[0, 1, 2], 2, x, tuning.step * local.radius)
+                .filter(|p| on_curve || (p - x).norm() < tuning.witness * ep)
                 .filter(supported);
             if on_curve && place.is_none() {
                 return None;

@@ -87,6 +87,16 @@ impl Atlas {
             new.len(),
             Scratch::default,
             |scratch, k| {
+                let mut regions = strata.regions().iter();
+                if let Some(region) = regions.find(|r| r.label(new[k]).is_some()) {
+                    return Some(Reference {
+                        row: new[k],
+                        labels: region.labels.clone(),
+                        // All of the region, from whichever of its points.
+                        radius: 2.0 * region.reach,
+                        fit: region.fit.clone(),
+                    });
+                }
                 let (mut fit, near, radius) = fitter.decomposition(strata, new[k], scratch)?;
                 let mut labels: Vec<(u32, u8)> = near
                     .iter()

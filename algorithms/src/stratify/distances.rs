@@ -1,8 +1,8 @@
 //! Distances of landmarks that are in one chart.
 
 use super::analysis::Analyzer;
+use super::charts::ChartSpace;
 use super::strata::Strata;
-use super::waist::ChartSpace;
 use crate::audit;
 use crate::execute::{self, Execute};
 use crosscap_core::{CellNeighborhood, Error, MetricSpace, Scalar, SparseDistances};

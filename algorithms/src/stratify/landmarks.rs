@@ -1,6 +1,7 @@
 //! Landmarks inside cells.
 
 use super::analysis::Analyzer;
+use super::curve_ends;
 use super::skeleton::Skeleton;
 use super::strata::Strata;
 use crate::audit;
@@ -19,7 +20,8 @@ pub(super) fn choose<S: Scalar>(
     seed: u64,
 ) -> Result<Vec<usize>, Error> {
     let candidates = free_of_edges(analyzer, strata, skeleton);
-    let taken = skeleton.rows();
+    let innermost = curve_ends::innermost(strata, analyzer.tuning.ends.innermost * dl);
+    let taken = &[skeleton.rows(), &innermost].concat();
     let oracle = analyzer.space.oracle();
     let chosen = selector.select(oracle, &candidates, taken, dl, seed)?;
     let question = audit::Question {
@@ -29,7 +31,7 @@ pub(super) fn choose<S: Scalar>(
         separation: dl,
     };
     audit::selection(oracle, analyzer.execute, &question, &chosen)?;
-    Ok(chosen)
+    Ok([innermost, chosen].concat())
 }
 
 /// Regular rows outside the diametral ball of every chain edge: a landmark inside it would

@@ -1,34 +1,36 @@
 //! Landmarks where the surface bends more than triangles of the usual size can follow.
 
-use super::strata::Strata;
-use super::tuning::RefinementTuning;
+use super::producer::WaistProducer;
+use crate::tuning::RefinementTuning;
 use crosscap_core::{Complex, Neighbor, NeighborhoodOracle, Scalar};
 
 /// A triangulation beside the points that it should follow.
 pub struct Refinement<'r, S: Scalar> {
     /// Neighborhoods of places in straight lines, between the coordinates that triangles are drawn in.
     pub near: &'r dyn NeighborhoodOracle<Scalar = S>,
-    /// Where every point is.
-    pub strata: &'r Strata,
+    /// Says where every row lies, and which may be landmarks.
+    pub producer: &'r dyn WaistProducer<S>,
     /// Rows of the landmarks.
     pub rows: &'r [usize],
     /// Landmark separation dl.
     pub dl: f64,
+    /// How many times dl the separation at each point is; once everywhere when left out.
+    pub scale: Option<&'r [f64]>,
     /// The numbers that decide.
     pub tuning: &'r RefinementTuning,
 }
 
 impl<S: Scalar> Refinement<'_, S> {
     /// Rows that should be landmarks as well: one where the middle of a triangle or of an edge is far from
-    /// every point. None where every point is one already, or the space has no coordinates.
+    /// every point. None where every point is one already, or the producer names no places.
     ///
     /// O(log n) for each triangle, O(L) for each that strays, with L landmarks.
     pub fn rows_where_astray(&self, complex: &Complex) -> Vec<usize> {
         let mut added = Vec::new();
-        let Some(places) = self.strata.places() else {
+        let Some(places) = self.producer.places() else {
             return added;
         };
-        if self.rows.len() == self.strata.len() {
+        if self.rows.len() == places.len() {
             return added;
         }
         let place = |v: u32| places.point(self.rows[v as usize]);
@@ -41,15 +43,26 @@ impl<S: Scalar> Refinement<'_, S> {
                     let sum: f64 = corners.iter().map(|&v| place(v)[k]).sum();
                     S::of(sum / corners.len() as f64)
                 }));
-                added.extend(self.missing(t.map(place), &middle, &added));
+                added.extend(self.missing(self.rows[a as usize], t.map(place), &middle, &added));
             }
         }
         added
     }
 
-    /// A row that should be a landmark beside a triangle with the given corners, a part of which has its
-    /// middle at `middle`; `added` are landmarks that were added before.
-    fn missing(&self, corners: [&[f64]; 3], middle: &[S], added: &[usize]) -> Option<usize> {
+    /// Landmark separation at a row.
+    fn separation(&self, row: usize) -> f64 {
+        self.dl * self.scale.map_or(1.0, |scale| scale[row])
+    }
+
+    /// A row that should be a landmark beside a triangle with the given corners, the first of which stands for `row`,
+    /// and a part of which has its middle at `middle`; `added` are landmarks that were added before.
+    fn missing(
+        &self,
+        row: usize,
+        corners: [&[f64]; 3],
+        middle: &[S],
+        added: &[usize],
+    ) -> Option<usize> {
         let RefinementTuning {
             stray,
             separation,
@@ -57,26 +70,70 @@ impl<S: Scalar> Refinement<'_, S> {
             growth,
             ..
         } = *self.tuning;
-        let places = self.strata.places()?;
-        let mut reach = stray * self.dl;
+        let places = self.producer.places()?;
+        let dl = self.separation(row);
+        let mut reach = stray * dl;
         if self.near.is_near(middle, S::of(reach)) {
             return None;
         }
         let mut near: Vec<Neighbor<S>> = Vec::new();
-        while near.is_empty() && reach < look * self.dl {
+        while near.is_empty() && reach < look * dl {
             reach *= growth;
             self.near.within_of(middle, S::of(reach), &mut near);
         }
         let nearest = near.first()?;
-        if off_plane(corners, middle, places.point(nearest.index)) < stray * self.dl {
+        if off_plane(corners, middle, places.point(nearest.index)) < stray * dl {
             return None;
         }
-        let limit = (separation * self.dl).powi(2);
-        let free = |row: usize| {
-            let mut others = self.rows.iter().chain(added);
-            self.strata.is_regular(row) && others.all(|&r| places.squared_distance(r, row) >= limit)
-        };
+        let free = |row: usize| self.is_free(row, added, separation * dl);
         near.iter().map(|x| x.index).find(|&r| free(r))
+    }
+
+    /// Rows that should be landmarks as well: points that a mesh leaves behind, at an edge or a tip that its triangles
+    /// cut off; the farthest first. `heights` are the distances of all points from the mesh, unit of the data.
+    ///
+    /// Points without company are outliers and stay where they are. None where the space has no coordinates.
+    /// O(n + f (log n + L)) for n points, f of them far from the mesh, and L landmarks.
+    pub fn rows_left_behind(&self, heights: &[f64]) -> Vec<usize> {
+        let mut added = Vec::new();
+        if self
+            .producer
+            .places()
+            .is_none_or(|places| places.len() != heights.len())
+        {
+            return added;
+        }
+        let far = |row: usize| heights[row] / self.separation(row);
+        let is_far = |&row: &usize| far(row).is_finite() && far(row) > self.tuning.behind;
+        let mut behind: Vec<usize> = (0..heights.len()).filter(is_far).collect();
+        behind.sort_by(|&a, &b| far(b).total_cmp(&far(a)).then(a.cmp(&b)));
+        for row in behind {
+            if self.is_free(row, &added, self.tuning.separation * self.separation(row))
+                && self.has_company(row, heights)
+            {
+                added.push(row);
+            }
+        }
+        added
+    }
+
+    /// Whether half of the nearest points of a row are at least half as far from the mesh as it is.
+    fn has_company(&self, row: usize, heights: &[f64]) -> bool {
+        let mut near: Vec<Neighbor<S>> = Vec::new();
+        self.near.nearest(row, self.tuning.company + 1, &mut near);
+        let others = near.iter().map(|x| x.index).filter(|&other| other != row);
+        let along = others.filter(|&other| heights[other] >= 0.5 * heights[row]);
+        2 * along.count() >= self.tuning.company
+    }
+
+    /// Whether a row may become a landmark: it lies in a cell, so far from all others and from those `added`.
+    fn is_free(&self, row: usize, added: &[usize], separation: f64) -> bool {
+        let Some(places) = self.producer.places() else {
+            return false;
+        };
+        let limit = separation.powi(2);
+        let mut others = self.rows.iter().chain(added);
+        self.producer.may_add(row) && others.all(|&r| places.squared_distance(r, row) >= limit)
     }
 }
 

@@ -1,16 +1,19 @@
 //! The strata as the points show them, gaps filled: what chains are laid on and cells are cut along.
 
 use super::analysis::Analysis;
-use super::site::{Site, StratumKind, Witness};
+use super::curve_ends::EndRegion;
+use super::site::{On, Site, StratumKind, Witness};
 use crate::balls::BallTree;
 use crosscap_core::{PointCloud, Scalar, squared_distance};
 
 /// Where every point is, with the places that points on curves are moved to. Made once from an
-/// [`Analysis`] and a resolution, and not changed after that.
+/// [`Analysis`] and a resolution; what is at the ends of curves is entered then, and nothing changes after that.
 #[derive(Clone, Debug)]
 pub struct Strata {
     sites: Vec<Site>,
     places: Option<PointCloud<f64>>,
+    /// Points at which curves end inside a sheet, with what is about them.
+    regions: Vec<EndRegion>,
 }
 
 impl Strata {
@@ -52,6 +55,7 @@ impl Strata {
         Self {
             sites: analysis.sites.clone(),
             places,
+            regions: Vec::new(),
         }
     }
 
@@ -93,6 +97,30 @@ impl Strata {
     /// Radius of the fit that put a point on a curve or point, where there is one.
     pub(super) fn radius(&self, row: usize) -> Option<f64> {
         self.sites[row].on()?.fit.map(|fit| fit.radius)
+    }
+
+    /// The points at which curves end inside a sheet, with what is about them.
+    pub(super) fn regions(&self) -> &[EndRegion] {
+        &self.regions
+    }
+
+    /// Takes a point at which a curve ends.
+    pub(super) fn add_region(&mut self, region: EndRegion) {
+        self.regions.push(region);
+    }
+
+    /// Puts a row on a stratum, or back inside a cell, to its place in the cloud.
+    pub(super) fn enter<S: Scalar>(&mut self, cloud: &PointCloud<S>, row: usize, on: Option<On>) {
+        if let Some(places) = &mut self.places {
+            match on.as_ref().and_then(|on| on.place.as_deref()) {
+                Some(place) => places.set_point(row, place),
+                None => {
+                    let own: Vec<f64> = cloud.point(row).iter().map(|x| x.as_f64()).collect();
+                    places.set_point(row, &own);
+                }
+            }
+        }
+        self.sites[row] = on.map_or(Site::Regular, |on| Site::On(Box::new(on)));
     }
 
     /// How many cells meet at a point; 0 inside a cell.

@@ -3,13 +3,15 @@
 use super::analysis::{Analysis, Analyzer};
 use super::atlas::Reference;
 use super::cells::{Contacts, Labels, Neighborhoods};
+use super::charts::ChartSpace;
+use super::curve_ends;
 use super::distances::within_charts;
 use super::landmarks;
+use super::producer::WaistProducer;
 use super::skeleton::Skeleton;
 use super::strata::Strata;
-use crate::space::Space;
-use crosscap_core::{Error, LandmarkSelector, Link, Scalar, StratifiedLandmarks};
-use serde::{Deserialize, Serialize};
+use super::stratification::Stratification;
+use crosscap_core::{Error, LandmarkSelector, PointCloud, Scalar, StratifiedLandmarks};
 
 /// Parameters of the stratification.
 #[derive(Clone, Debug)]
@@ -35,77 +37,6 @@ impl StratifyOptions {
         }
         Ok(())
     }
-}
-
-/// What the stratification counted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct StratifyCounts {
-    /// Landmarks.
-    pub landmarks: usize,
-    /// Landmarks on curves and points.
-    pub curve_landmarks: usize,
-    /// Landmarks that are points where curves end.
-    pub corners: usize,
-    /// Chain edges.
-    pub curve_edges: usize,
-    /// Edges of the neighbor graph that the labels cut.
-    pub cut_edges: usize,
-    /// Mean number of members of a neighborhood.
-    pub mean_members: f64,
-}
-
-/// A landmark at a 0-stratum, with what meets there by the model that found it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PointStratum {
-    /// The landmark.
-    pub landmark: u32,
-    /// Number of curves that end there.
-    pub curves: usize,
-    /// Number of cells that have it at their rim.
-    pub cells: usize,
-    /// Its link, where the model knows it.
-    pub link: Option<Link>,
-}
-
-/// The waist, and what ties it to the points.
-#[derive(Clone, Debug)]
-pub struct Stratification<S> {
-    /// What the triangulator takes.
-    pub waist: StratifiedLandmarks<S>,
-    /// Row of the input that each landmark stands for.
-    pub rows: Vec<usize>,
-    /// The 0-strata that a model found.
-    pub points: Vec<PointStratum>,
-    /// Counts for the report.
-    pub counts: StratifyCounts,
-}
-
-/// What says how far a chart reaches, and measures the distances in it.
-#[derive(Clone, Copy)]
-pub enum ChartSpace<'a, S: Scalar> {
-    /// Straight lines between the places of the points, those on curves moved onto them.
-    Places,
-    /// A metric on the rows of the input.
-    Metric(Space<'a, S>),
-}
-
-/// Makes waists of one cloud at one resolution: the first, and others with more landmarks.
-///
-/// A waist does not depend on those that were made before.
-pub trait WaistProducer<S: Scalar> {
-    /// Where every point is.
-    fn strata(&self) -> &Strata;
-
-    /// Whether landmarks may be added.
-    fn takes_more(&self) -> bool {
-        true
-    }
-
-    /// The waist, with the rows `extra` as landmarks whatever their separation.
-    ///
-    /// # Errors
-    /// Those of the producer.
-    fn waist(&self, extra: &[usize]) -> Result<Stratification<S>, Error>;
 }
 
 /// A cloud cut along its curves and points into cells.
@@ -150,7 +81,8 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         } = analyzer;
         let dl = options.dl;
         let gap = 2.0 * tuning.skeleton.node_spacing * dl;
-        let strata = Strata::of(analysis, space.places(), gap, dl);
+        let mut strata = Strata::of(analysis, space.places(), gap, dl);
+        curve_ends::explain(analyzer, &mut strata)?;
         let skeleton = Skeleton::lay(analyzer, &strata, dl)?;
         let chosen = landmarks::choose(analyzer, &strata, &skeleton, selector, dl, options.seed)?;
         let fits: Vec<&Reference> = skeleton.labelling().collect();
@@ -176,7 +108,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         let mut free = vec![true; self.strata.len()];
         self.chosen.iter().for_each(|&row| free[row] = false);
         for &row in extra {
-            if row < self.strata.len() && self.strata.is_regular(row) && free[row] {
+            if self.may_add(row) && free[row] {
                 rows.push(row);
             }
         }
@@ -185,8 +117,12 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
 }
 
 impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
-    fn strata(&self) -> &Strata {
-        &self.strata
+    fn may_add(&self, row: usize) -> bool {
+        row < self.strata.len() && self.strata.is_regular(row)
+    }
+
+    fn places(&self) -> Option<&PointCloud<f64>> {
+        self.strata.places()
     }
 
     fn waist(&self, extra: &[usize]) -> Result<Stratification<S>, Error> {
@@ -214,24 +150,15 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
             &rows,
             &neighborhoods,
         )?;
-        let members: usize = neighborhoods.iter().map(|x| x.members.len()).sum();
-        Ok(Stratification {
-            counts: StratifyCounts {
-                landmarks: rows.len(),
-                curve_landmarks: on_curves,
-                corners: self.skeleton.corners(),
-                curve_edges: self.skeleton.edges().len(),
-                cut_edges,
-                mean_members: members as f64 / neighborhoods.len().max(1) as f64,
-            },
-            waist: StratifiedLandmarks {
-                strata,
-                curve_edges: self.skeleton.edges().to_vec(),
-                neighborhoods,
-                distances,
-            },
-            points: (self.skeleton).points(&self.strata, self.analyzer.models),
-            rows,
-        })
+        let waist = StratifiedLandmarks {
+            strata,
+            curve_edges: self.skeleton.edges().to_vec(),
+            neighborhoods,
+            distances,
+        };
+        let mut out = Stratification::new(waist, rows);
+        out.counts.cut_edges = cut_edges;
+        out.points = (self.skeleton).points(&self.strata, self.analyzer.models);
+        Ok(out)
     }
 }

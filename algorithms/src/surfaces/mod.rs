@@ -12,6 +12,7 @@
 //! | a formula with its derivatives | [`Jet`] |
 //! | minimal spacing | [`thin`](fn@thin), [`thin_randomly`] |
 //! | rigid motion, scaling, isometric embedding | [`RigidMotion`], [`scaled`], [`embed`] |
+//! | surfaces around one feature of variable size | [`Feature`], [`FeatureCloud`] |
 //! | conformations of cyclo-octane | [`RingConformations`] |
 //!
 //! Points are uniform by area unless asked otherwise: a piece proposes parameters and accepts them in
@@ -21,6 +22,7 @@
 
 mod catalogue;
 mod curves;
+mod features;
 mod flat;
 mod henneberg;
 mod jet;
@@ -40,6 +42,7 @@ mod truth;
 mod two_holed_torus;
 
 pub use catalogue::{SampleSurface, catalogue};
+pub use features::{Drawing, Feature, FeatureCloud, Spot};
 pub use flat::{HalfDisc, Rectangle, Segment, SwissRoll};
 pub use henneberg::Henneberg;
 pub use jet::{Jet, area_element, first_fundamental_form};

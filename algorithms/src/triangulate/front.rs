@@ -1,13 +1,11 @@
 //! The growing complex: triangles at every landmark, and a log that takes steps back.
 
-use super::parts::Triangulator;
+use super::parts::AdvancingFront;
 use crosscap_core::{Scalar, StratifiedLandmarks};
 
-/// Two landmarks of a curve closer than this many steps along it are joined by chain edges only.
-const SHORTCUT_STEPS: usize = 4;
 /// The growing complex.
 pub(super) struct Front<'a, S: Scalar> {
-    pub(super) parts: &'a Triangulator<'a>,
+    pub(super) parts: &'a AdvancingFront<'a>,
     pub(super) input: &'a StratifiedLandmarks<S>,
     pub(super) triangles: Vec<[u32; 3]>,
     free: Vec<u32>,
@@ -25,7 +23,7 @@ pub(super) struct Front<'a, S: Scalar> {
 
 impl<'a, S: Scalar> Front<'a, S> {
     /// No triangle yet.
-    pub(super) fn new(parts: &'a Triangulator<'a>, input: &'a StratifiedLandmarks<S>) -> Self {
+    pub(super) fn new(parts: &'a AdvancingFront<'a>, input: &'a StratifiedLandmarks<S>) -> Self {
         let count = input.strata.len();
         let mut curve = vec![Vec::new(); count];
         for e in &input.curve_edges {
@@ -106,7 +104,7 @@ impl<'a, S: Scalar> Front<'a, S> {
         }
         let mut reached = vec![a];
         let mut from = 0;
-        for _ in 0..SHORTCUT_STEPS {
+        for _ in 0..self.parts.tuning.shortcut_steps {
             let until = reached.len();
             for k in from..until {
                 let v = reached[k];

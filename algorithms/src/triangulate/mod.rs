@@ -7,6 +7,6 @@ mod rule;
 mod rules;
 mod run;
 mod star;
-pub use parts::{Incomplete, Triangulation, TriangulationCounts, Triangulator};
+pub use parts::AdvancingFront;
 pub use rule::{LargestAngle, MinimumCircumradius};
 pub use rules::Rules;

@@ -1,11 +1,13 @@
-//! What a triangulation is made with, and what it yields.
+//! What the advancing front is put together from.
 
 use super::Rules;
-use crosscap_core::{CompatibilityTest, Complex, LocalChart, TriangleRule};
-use serde::{Deserialize, Serialize};
+use crate::tuning::FrontTuning;
+use crosscap_core::{CompatibilityTest, LocalChart, TriangleRule};
 
-/// Triangulates the waist.
-pub struct Triangulator<'a> {
+/// Triangulates the waist by an advancing front of stars (Martin & Watson 2011, section 2.2.2, with repairs).
+///
+/// One model of [`Triangulator`](crosscap_core::Triangulator); its parts are plug-ins of their own.
+pub struct AdvancingFront<'a> {
     /// Lays neighborhoods out in the plane.
     pub chart: &'a dyn LocalChart,
     /// Decides whether two triangles can stand side by side.
@@ -19,35 +21,6 @@ pub struct Triangulator<'a> {
     pub repair: bool,
     /// What a triangle must satisfy beside being compatible.
     pub rules: Rules,
-}
-
-/// A star that stayed open.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Incomplete {
-    /// The landmark.
-    pub landmark: u32,
-}
-
-/// What the triangulation counted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TriangulationCounts {
-    /// Stars visited, with repetitions.
-    pub visits: usize,
-    /// Repairs: stars that could not be closed at once.
-    pub repairs: usize,
-    /// Landmarks given up.
-    pub dropped: usize,
-}
-
-/// The result.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Triangulation {
-    /// The complex on the landmarks; a dropped landmark is an isolated vertex.
-    pub complex: Complex,
-    /// Landmarks given up.
-    pub dropped: Vec<u32>,
-    /// Stars that stayed open.
-    pub incomplete: Vec<Incomplete>,
-    /// Counts for the report.
-    pub counts: TriangulationCounts,
+    /// The numbers that decide.
+    pub tuning: &'a FrontTuning,
 }

@@ -3,12 +3,6 @@
 use super::run::Run;
 use crosscap_core::{Error, Scalar};
 
-/// How many of the nearest members of a chart lose their triangles in a repair, one attempt after
-/// another.
-const TEARS: [usize; 6] = [0, 4, 8, 12, 18, 26];
-/// How many nearest neighbors are tried as the landmark to drop when tearing does not help.
-const DROPS: usize = 6;
-
 impl<S: Scalar> Run<'_, '_, S> {
     /// Tries to close the star of `v` by repairs, with `drop` also by giving up a landmark.
     /// `true` when one succeeded.
@@ -22,8 +16,11 @@ impl<S: Scalar> Run<'_, '_, S> {
             .copied()
             .filter(|&m| !self.front.dropped[m as usize])
             .collect();
-        for reach in TEARS {
-            if reach < members.len() + 4 && self.attempt(v, k, &members, reach, None)? {
+        let tuning = self.front.parts.tuning;
+        for reach in tuning.tears {
+            if reach < members.len() + tuning.beyond_chart
+                && self.attempt(v, k, &members, reach, None)?
+            {
                 return Ok(true);
             }
         }
@@ -35,10 +32,10 @@ impl<S: Scalar> Run<'_, '_, S> {
             .iter()
             .copied()
             .filter(cell)
-            .take(1 + DROPS)
+            .take(1 + tuning.drops)
             .collect();
         for u in droppable {
-            for reach in [0, 8] {
+            for reach in tuning.tears_of_drop {
                 if self.attempt(v, k, &members, reach, Some(u))? {
                     self.counts.dropped += 1;
                     return Ok(true);

@@ -1,22 +1,18 @@
 //! The advancing front: which star is closed next.
 
 use super::front::Front;
-use super::parts::{Incomplete, Triangulation, TriangulationCounts, Triangulator};
+use super::parts::AdvancingFront;
 use super::star::Patch;
 use crate::audit::{AuditedChart, AuditedRule, AuditedTest, Watch, known_pairs};
-use crosscap_core::{Complex, CurveEdge, Error, Scalar, StratifiedLandmarks};
+use crosscap_core::{
+    Complex, CurveEdge, Error, Incomplete, Scalar, StratifiedLandmarks, Triangulation,
+    TriangulationCounts, Triangulator,
+};
 use std::collections::VecDeque;
 use std::sync::atomic::AtomicU32;
 
-/// Repairs tried in all: a constant and a share of the landmarks. Data that no triangulation fits would
-/// otherwise be torn up star by star.
-const ATTEMPTS: usize = 400;
-const ATTEMPT_SHARE: usize = 4;
-/// Passes over the stars of curve landmarks: a repair of one may open another.
-const CURVE_PASSES: usize = 4;
-
-impl Triangulator<'_> {
-    /// Triangulates: every landmark of a cell is visited and its star closed, the front
+impl<S: Scalar> Triangulator<S> for AdvancingFront<'_> {
+    /// Every landmark of a cell is visited and its star closed, the front
     /// advancing from neighbor to neighbor; then the stars of curve landmarks are completed, cell by cell.
     ///
     /// When a star cannot be closed, a repair removes the triangles around it, closes it first
@@ -30,10 +26,7 @@ impl Triangulator<'_> {
     /// order of the ends, or a triangle without area that does not rank last.
     ///
     /// O(L k^2) for L landmarks with k members in a neighborhood, plus the charts.
-    pub fn triangulate<S: Scalar>(
-        &self,
-        input: &StratifiedLandmarks<S>,
-    ) -> Result<Triangulation, Error> {
+    fn triangulate(&self, input: &StratifiedLandmarks<S>) -> Result<Triangulation, Error> {
         input.check()?;
         let first = input.neighborhoods.first().and_then(|near| {
             let (&a, &b) = (near.members.first()?, near.members.get(1)?);
@@ -42,7 +35,7 @@ impl Triangulator<'_> {
         let size = first.map_or(1.0, Scalar::as_f64);
         known_pairs(self.test, if size > 0.0 { size } else { 1.0 })?;
         let watch = Watch::default();
-        let parts = &Triangulator {
+        let parts = &AdvancingFront {
             chart: &AuditedChart {
                 chart: self.chart,
                 watch: &watch,
@@ -74,6 +67,10 @@ impl Triangulator<'_> {
             counts,
         })
     }
+
+    fn name(&self) -> &str {
+        "advancing-front"
+    }
 }
 
 /// One triangulation under way.
@@ -96,7 +93,7 @@ pub(super) struct Run<'r, 'a, S: Scalar> {
 
 impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
     fn new(watch: &'r Watch, front: &'r mut Front<'a, S>) -> Self {
-        let input = front.input;
+        let (input, tuning) = (front.input, front.parts.tuning);
         let count = input.strata.len();
         let mut home = vec![usize::MAX; count];
         let mut sectors: Vec<Vec<usize>> = vec![Vec::new(); count];
@@ -117,7 +114,7 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
             kept: Vec::new(),
             counts: TriangulationCounts::default(),
             incomplete: Vec::new(),
-            attempts: ATTEMPTS + count / ATTEMPT_SHARE,
+            attempts: tuning.attempts + count / tuning.landmarks_per_attempt.max(1),
         }
     }
 
@@ -174,7 +171,7 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
     fn close_curves(&mut self) -> Result<Vec<(u32, usize)>, Error> {
         let mut open = Vec::new();
         let passes = if self.front.parts.rules.curve_stars {
-            CURVE_PASSES
+            self.front.parts.tuning.curve_passes
         } else {
             0
         };

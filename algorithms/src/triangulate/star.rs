@@ -236,8 +236,10 @@ impl<'a> Patch<'a> {
         let rules = front.parts.rules;
         let total = front.count(u, v);
         match front.cells(u, v) {
+            // Beyond the end of a curve of two cells a chart shows both.
             Some(cells) => {
-                !rules.edge_counts || total < cells as usize && self.across(u, v).next().is_none()
+                let other = cells != 2 && self.across(u, v).next().is_some();
+                !rules.edge_counts || total < cells as usize && !other
             }
             None => {
                 (!rules.edge_counts || total < 2)

@@ -14,6 +14,7 @@ use std::str::FromStr;
 
 /// Which columns of a table, an array or a record are the coordinates of a point.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ColumnChoice {
     /// Columns that are named x, y, z, when there are such names. Else all, except that normals
     /// and colors are left out of files which are positions by custom: `.xyz`, `.asc`, `.pts`.

@@ -135,9 +135,8 @@ fn instead(extension: &str) -> &'static str {
             ": numpy.save(\"points.npy\", frame[[\"x\", \"y\", \"z\"]].to_numpy()), with the frame as pandas reads it"
         }
         "xlsx" | "xls" | "ods" => ": save it as .csv",
-        "laz" => ": unpack it first (laszip -i points.laz -o points.las)",
         "e57" => ": pdal translate points.e57 points.ply",
-        "xtc" | "trr" | "dcd" | "nc4" => {
+        "trr" | "nc4" => {
             ": numpy.save(\"frames.npy\", trajectory.xyz.reshape(len(trajectory), -1)), as mdtraj reads it"
         }
         "gltf" | "glb" | "dae" | "fbx" | "3mf" | "step" | "stp" | "iges" => {

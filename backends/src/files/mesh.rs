@@ -25,6 +25,7 @@ pub struct MeshExtras {
 
 /// A mesh as it was read.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MeshFile {
     /// The mesh.
     pub mesh: Mesh,

@@ -6,6 +6,9 @@ use super::npz::Archive;
 use super::{npy, npz};
 use crosscap_core::CurveEdge;
 
+/// What is found in an archive that holds no mesh, as [`super::FileError::Content`] says it.
+pub const NO_TRIANGLES: &str = "no array triangles";
+
 fn table<A: npy::Stored>(columns: usize, numbers: &[A]) -> Vec<u8> {
     npy::bytes(&[numbers.len() / columns, columns], numbers)
 }
@@ -72,11 +75,11 @@ pub(crate) fn bytes(sheet: &Sheet<'_>) -> Vec<u8> {
 /// Reads the archive. Only `vertices` and `triangles` must be there.
 pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
     let mut archive = Archive::open(bytes)?;
-    let vertices = archive.array("vertices")?;
-    let (_, dimension) = vertices.rows_columns().map_err(|f| f.within("vertices"))?;
     let triangles = archive
         .integers("triangles", Some(3))?
-        .ok_or_else(|| Flaw::new("no array triangles", "one of shape [any, 3]"))?;
+        .ok_or_else(|| Flaw::new(NO_TRIANGLES, "one of shape [any, 3]"))?;
+    let vertices = archive.array("vertices")?;
+    let (_, dimension) = vertices.rows_columns().map_err(|f| f.within("vertices"))?;
     let mut curves: Option<Vec<RawCurve>> = None;
     for (edges, cells, fixed) in [
         ("singular_edges", Some("singular_cells"), None),

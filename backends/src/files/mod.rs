@@ -39,6 +39,7 @@ mod points;
 mod remark;
 mod stl;
 mod table;
+mod trajectory;
 mod vtk;
 mod vtk_xml;
 mod vtu;
@@ -55,6 +56,7 @@ pub use indices::{read_indices, write_indices};
 pub use mesh::{
     MESH_EXTENSIONS, MESH_READ_EXTENSIONS, MeshExtras, MeshFile, read_mesh, write_mesh,
 };
+pub use mesh_npz::NO_TRIANGLES;
 pub use molecule::{Atom, Molecule, read_molecule};
 pub use points::{
     POINT_EXTENSIONS, PointFile, PointOptions, read_point_file, read_points, write_points,

@@ -40,6 +40,23 @@ pub struct Molecule {
 }
 
 impl Molecule {
+    /// The same frames with the atoms of a topology: another file of the same molecule that names them.
+    ///
+    /// # Errors
+    /// A sentence with both numbers, where the topology has another number of atoms.
+    pub fn with_atoms(self, topology: &Self) -> Result<Self, String> {
+        let (found, expected) = (topology.atoms.len(), self.atoms.len());
+        if found != expected {
+            return Err(format!(
+                "found {found} atoms, expected {expected}, as many as the trajectory has"
+            ));
+        }
+        Ok(Self {
+            atoms: topology.atoms.clone(),
+            frames: self.frames,
+        })
+    }
+
     /// Some atoms of every frame, in the given order.
     ///
     /// # Panics

@@ -3,7 +3,9 @@
 //! Written as little-endian binary in double precision, hence lossless. Other programs stumble over
 //! edges: meshio over any, most over a third property. So edges are written only when the triangles
 //! do not tell where the curves are, and how many cells meet at them stands in comments of the
-//! header, `comment cells 4 120`: the next 120 edges have 4.
+//! header, `comment cells 4 120`: the next 120 edges have 4. meshio stumbles over any number of a face
+//! beside its corners, too: triangles stand piece by piece, and `comment piece 0 1778` tells that the next 1778 are of
+//! piece 0.
 
 use super::columns::{ColumnChoice, pick};
 use super::error::{Flaw, Parsed, excerpt};
@@ -77,7 +79,8 @@ pub(crate) fn parse_mesh(bytes: &[u8]) -> Parsed<Parts> {
             }
             "face" => {
                 parts.triangles = triangles(&rows)?;
-                parts.pieces = labels("piece");
+                let told = runs("piece", "triangles", element.count, &reader.comments)?;
+                parts.pieces = told.or_else(|| labels("piece"));
             }
             "edge" => parts.curves = Some(curves(&element, &rows, &reader.comments)?),
             _ => {}
@@ -108,6 +111,39 @@ fn triangles(rows: &Rows) -> Parsed<Vec<[i64; 3]>> {
     rows.ends.iter().enumerate().map(face).collect()
 }
 
+/// Numbers of the rows of an element as comments of the header tell them, `comment NAME NUMBER ROWS`; `None` without any.
+fn runs(name: &str, what: &str, count: usize, comments: &[&str]) -> Parsed<Option<Vec<i64>>> {
+    let mut found = Vec::new();
+    for comment in comments {
+        let words: Vec<&str> = comment.split_whitespace().collect();
+        let [_, number, rows] = words[..] else {
+            continue;
+        };
+        if words[0] == name {
+            let (Ok(number), Ok(rows)) = (number.parse::<i64>(), rows.parse::<usize>()) else {
+                return Err(Flaw::new(
+                    excerpt(comment),
+                    format!("a comment {name} with a number and how many {what} have it"),
+                ));
+            };
+            found.push((number, rows));
+        }
+    }
+    let told = found.iter().fold(0_usize, |sum, r| sum.saturating_add(r.1));
+    if found.is_empty() {
+        return Ok(None);
+    }
+    if told != count {
+        return Err(Flaw::new(
+            format!("comments {name} for {told} {what}"),
+            count.to_string(),
+        ));
+    }
+    let all = found.into_iter();
+    let all = all.flat_map(|(number, rows)| std::iter::repeat_n(number, rows));
+    Ok(Some(all.collect()))
+}
+
 /// Edges with their cells, from a property of that name or from the comments of the header.
 fn curves(
     element: &Element,
@@ -121,32 +157,12 @@ fn curves(
     };
     let (a, b) = (end("vertex1")?, end("vertex2")?);
     let counted = element.column("cells");
-    let mut runs = Vec::new();
-    for comment in comments {
-        if let ["cells", cells, count] = comment.split_whitespace().collect::<Vec<_>>()[..] {
-            let (Ok(cells), Ok(count)) = (cells.parse::<i64>(), count.parse::<usize>()) else {
-                return Err(Flaw::new(
-                    excerpt(comment),
-                    "a comment cells with a number of cells and of edges",
-                ));
-            };
-            runs.push((cells, count));
-        }
-    }
-    let told = runs.iter().fold(0_usize, |sum, r| sum.saturating_add(r.1));
-    if !runs.is_empty() && told != element.count {
-        return Err(Flaw::new(
-            format!("comments cells for {told} edges"),
-            element.count.to_string(),
-        ));
-    }
-    let mut runs = runs
-        .iter()
-        .flat_map(|&(cells, count)| std::iter::repeat_n(cells, count));
-    let edges = rows.scalars.chunks_exact(rows.width);
+    let told = runs("cells", "edges", element.count, comments)?;
+    let edges = rows.scalars.chunks_exact(rows.width).enumerate();
     Ok(edges
-        .map(|e| {
-            let cells = runs.next().or(counted.map(|k| e[k] as i64));
+        .map(|(at, e)| {
+            let cells = told.as_ref().map(|told| told[at]);
+            let cells = cells.or(counted.map(|k| e[k] as i64));
             ([e[a] as i64, e[b] as i64], cells)
         })
         .collect())
@@ -179,7 +195,6 @@ pub(crate) fn mesh_bytes(sheet: &Sheet<'_>) -> Vec<u8> {
         }
     };
     let narrow_rows = narrow(&mesh.point_index);
-    let narrow_pieces = sheet.pieces.is_some_and(narrow);
     let mut header = format!(
         "ply\nformat binary_little_endian 1.0\nelement vertex {}\n\
          property double x\nproperty double y\nproperty double z\nproperty {} point_index\n\
@@ -188,8 +203,15 @@ pub(crate) fn mesh_bytes(sheet: &Sheet<'_>) -> Vec<u8> {
         name(narrow_rows),
         complex.triangles.len(),
     );
-    if sheet.pieces.is_some() {
-        header += &format!("property {} piece\n", name(narrow_pieces));
+    let mut order: Vec<usize> = (0..sheet.triangles.len()).collect();
+    if let Some(pieces) = sheet.pieces {
+        if order.is_empty() {
+            header += "comment piece 0 0\n";
+        }
+        order.sort_by_key(|&at| pieces[at]);
+        for run in order.chunk_by(|&a, &b| pieces[a] == pieces[b]) {
+            header += &format!("comment piece {} {}\n", pieces[run[0]], run.len());
+        }
     }
     let mut curves: Vec<&CurveEdge> = complex.curve_edges.iter().collect();
     if tells_its_curves(complex) {
@@ -210,12 +232,9 @@ pub(crate) fn mesh_bytes(sheet: &Sheet<'_>) -> Vec<u8> {
         bytes.extend(place.iter().flat_map(|x| x.to_le_bytes()));
         put(&mut bytes, narrow_rows, row);
     }
-    for (at, triangle) in sheet.triangles.iter().enumerate() {
+    for at in order {
         bytes.push(3);
-        bytes.extend(triangle.iter().flat_map(|v| v.to_le_bytes()));
-        if let Some(pieces) = sheet.pieces {
-            put(&mut bytes, narrow_pieces, pieces[at]);
-        }
+        bytes.extend(sheet.triangles[at].iter().flat_map(|v| v.to_le_bytes()));
     }
     for edge in curves {
         bytes.extend(edge.ends.iter().flat_map(|v| v.to_le_bytes()));

@@ -7,13 +7,13 @@ use super::npy::{Array, Numbers};
 use super::npz::Archive;
 use super::remark::Remark;
 use super::whole::{extension, packed_extension, read_bytes, write_bytes_whole};
-use super::{las, mat, molecule, npy, obj, off, pcd, ply, stl, table, vtk, vtk_xml};
+use super::{las, mat, molecule, npy, obj, off, pcd, ply, stl, table, trajectory, vtk, vtk_xml};
 use crosscap_core::PointCloud;
 use std::path::Path;
 
 /// The extensions that [`read_points`] knows, each also with `.gz` behind it.
 pub const POINT_EXTENSIONS: &str = ".npy, .npz, .csv, .tsv, .txt, .dat, .xyz, .asc, .pts, .pdb, \
-    .ply, .pcd, .las, .off, .obj, .stl, .vtk, .vtu, .vtp, .mat";
+    .xtc, .dcd, .ply, .pcd, .las, .laz, .off, .obj, .stl, .vtk, .vtu, .vtp, .mat";
 
 /// How to take points from a file that leaves a choice.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -31,6 +31,7 @@ pub struct PointOptions {
 
 /// Points, and what the one who asked for them ought to know about how they were taken.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PointFile {
     /// The points.
     pub points: AnyCloud,
@@ -56,8 +57,9 @@ pub fn read_points(path: impl AsRef<Path>, options: &PointOptions) -> Result<Any
 /// | `.csv`, `.tsv`, `.txt`, `.dat`, `.xyz`, `.asc`, `.pts` | a table: `;`, tabs, `,` or white space; comments; names; decimal commas |
 /// | `.xyz` with a count line and labels | frames of a molecule, each one point of 3 numbers an atom |
 /// | `.pdb` | the same: ATOM and HETATM of each MODEL |
+/// | `.xtc`, `.dcd` | the same without the names of the atoms; `.xtc` in Angstrom too |
 /// | `.ply`, `.pcd` | x, y, z of the vertices or points, text or binary |
-/// | `.las` | the places |
+/// | `.las`, `.laz` | the places |
 /// | `.off`, `.obj`, `.stl` | the vertices, whatever the faces; of `.stl` each once |
 /// | `.vtk`, `.vtu`, `.vtp` | the points |
 /// | `.mat` | a real matrix, MATLAB version 5 (`-v7` and older) |
@@ -134,7 +136,7 @@ pub(crate) fn parse(extension: &str, bytes: &[u8], options: &PointOptions) -> Pa
             only_columns(options, "the points of a scan")?;
             from_records(pcd::parse(bytes, &options.columns)?)
         }
-        "las" => from_places(las::parse(bytes)?, options),
+        "las" | "laz" => from_places(las::parse(bytes)?, options),
         "off" => from_places(off::parse_points(bytes)?, options),
         "obj" => from_places(obj::parse_points(bytes)?, options),
         "stl" => {
@@ -145,6 +147,8 @@ pub(crate) fn parse(extension: &str, bytes: &[u8], options: &PointOptions) -> Pa
         "vtk" => from_places(vtk::parse(bytes)?, options),
         "vtu" => from_places(vtk_xml::parse_points(bytes, "UnstructuredGrid")?, options),
         "vtp" => from_places(vtk_xml::parse_points(bytes, "PolyData")?, options),
+        "xtc" => from_frames(trajectory::parse_xtc(bytes)?, options),
+        "dcd" => from_frames(trajectory::parse_dcd(bytes)?, options),
         "pdb" => from_frames(molecule::parse_pdb(bytes)?, options),
         "xyz" if molecule::is_chemical(bytes) => from_frames(molecule::parse_xyz(bytes)?, options),
         _ => from_table(bytes, extension, options),

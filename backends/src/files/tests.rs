@@ -296,6 +296,9 @@ fn valid_files(mesh: &Mesh, extras: &MeshExtras) -> Vec<Vec<u8>> {
         ));
     }
     files.push(las::tests::file(&[[1, 2, 3], [4, 5, 6]]));
+    files.push(las::tests::packed(&[[1, 2, 3], [4, 5, 6]]));
+    files.push(trajectory::tests::xtc(2, 12));
+    files.push(trajectory::tests::dcd(2, 3, false, true));
     files.push(b"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n".to_vec());
     files.push(b"solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n".to_vec());
     files.push(b"2\n\nC 0 0 1\nH 1 2 3\n2\n\nC 4 5 6\nH 7 8 9\n".to_vec());
@@ -306,7 +309,8 @@ fn valid_files(mesh: &Mesh, extras: &MeshExtras) -> Vec<Vec<u8>> {
 /// Every reader on the same bytes; the answers do not matter, coming back does.
 fn read_all(bytes: &[u8]) {
     for extension in [
-        "npy", "npz", "csv", "tsv", "txt", "xyz", "pts", "pdb", "ply", "mat",
+        "npy", "npz", "csv", "tsv", "txt", "xyz", "pts", "pdb", "ply", "mat", "pcd", "laz", "xtc",
+        "dcd",
     ] {
         for transpose in [false, true] {
             let options = PointOptions {

@@ -37,4 +37,4 @@ mod view;
 pub use self::page::page;
 pub use self::png::{Cut, StillOptions, still};
 pub use palette::{curve_color, piece_color};
-pub use scene::{Curve, CurveKind, Layout, Scene};
+pub use scene::{Curve, CurveKind, Layout, Mark, Scene, SceneScalar};

@@ -23,6 +23,15 @@
     return { name: l.name, places: numbers(l.places, true), points: numbers(l.points, true) };
   });
   const count = triangles.length / 3;
+  // Rows of the input: of vertices (-1 for none), and of sample points, where they are not all shown.
+  const vertexRows = new Int32Array(numbers(scene.vertex_rows, false).buffer), pointRows = numbers(scene.point_rows, false);
+  const scalars = scene.scalars.map(function (s) {
+    const out = { name: s.name, vertices: numbers(s.vertices, true), points: numbers(s.points, true), low: Infinity, high: -Infinity };
+    [out.vertices, out.points].forEach(function (list) {
+      list.forEach(function (x) { if (isFinite(x)) { out.low = Math.min(out.low, x); out.high = Math.max(out.high, x); } });
+    });
+    return out;
+  });
   const edgeKey = function (a, b) { return a < b ? a * 4294967296 + b : b * 4294967296 + a; };
   const onCurve = new Set();
   curves.forEach(function (c) {
@@ -43,7 +52,9 @@
   const state = {
     layout: 0, zoom: 1, pan: [0, 0], smooth: true, edges: false, points: count === 0 && curves.length === 0,
     curves: curves.map(function () { return true; }), pieces: scene.pieces.map(function () { return true; }),
-    opacity: 1, keep: 1, axis: "view", spin: false, width: 1
+    opacity: 1, keep: 1, axis: "view", spin: false, width: 1,
+    // Which scalar colors the mesh, -1 for the pieces; what was picked, in the layout.
+    color: -1, picked: null, marks: true
   };
   let turn = [0, 0, 0, 1];
   const DISTANCE = 5;
@@ -77,6 +88,29 @@
     const s = 2 * Math.sqrt(1 + m[8] - m[0] - m[4]); return [(m[2] + m[6]) / s, (m[5] + m[7]) / s, s / 4, (m[3] - m[1]) / s];
   };
 
+  // ---- colors -----------------------------------------------------------------------------
+  // From low to high, even in lightness: five places of the map viridis.
+  const STOPS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+  const UNKNOWN = [150, 150, 150], MARK = [214, 32, 32];
+  const shade = function (scalar, x) {
+    if (!isFinite(x)) return UNKNOWN;
+    const t = scalar.high > scalar.low ? 4 * (x - scalar.low) / (scalar.high - scalar.low) : 2;
+    const k = Math.min(3, Math.floor(t)), f = t - k;
+    return STOPS[k].map(function (c, i) { return Math.round(c + f * (STOPS[k + 1][i] - c)); });
+  };
+  const scalar = function (on) {
+    const s = state.color < 0 ? null : scalars[state.color];
+    return s && s[on].length ? s : null;
+  };
+  const vertexColor = function (t, v) {
+    const s = scalar("vertices");
+    return s ? shade(s, s.vertices[v]) : scene.pieces[pieceOf[t]].color;
+  };
+  const dotColor = function (i, own) {
+    const s = scalar(own ? "vertices" : "points");
+    return s ? shade(s, s[own ? "vertices" : "points"][i]) : dark() ? [204, 204, 204] : [72, 72, 76];
+  };
+
   // ---- geometry of a layout, made when it is first shown ------------------------------------
   const prepare = function (layout, index) {
     if (layout.ready) return;
@@ -88,9 +122,11 @@
     };
     const at = layout.at = scaled(P);
     layout.dots = layout.points.length ? scaled(layout.points) : at;
+    layout.marks = scaled(numbers(scene.layouts[index].marks, true));
     layout.home = fromRows(scene.layouts[index].view);
     let reach = 0;
-    for (let i = 0; i < at.length; i += 3) reach = Math.max(reach, Math.hypot(at[i], at[i + 1], at[i + 2]));
+    const all = at.length ? at : layout.dots;
+    for (let i = 0; i < all.length; i += 3) reach = Math.max(reach, Math.hypot(all[i], all[i + 1], all[i + 2]));
     layout.reach = Math.min(1.8, reach || 1);
     // Normals of triangles, then of corners over the triangles that hang together around a vertex.
     const area = new Float32Array(3 * count), flat = layout.flat = new Float32Array(3 * count);
@@ -150,7 +186,26 @@
     const n = state.axis === "view" ? [m[6], m[7], m[8]] : [state.axis === "x" ? 1 : 0, state.axis === "y" ? 1 : 0, state.axis === "z" ? 1 : 0];
     return n.concat([state.keep >= 1 ? 1e9 : (2 * state.keep - 1) * reach * 1.001]);
   };
+  // Places on the canvas: x, y, distance from the viewer, whether it is in sight.
+  const project = function (list, cam, plane) {
+    const n = list.length / 3, out = new Float32Array(4 * n), m = cam.m;
+    for (let i = 0; i < n; i++) {
+      const x = list[3 * i], y = list[3 * i + 1], z = list[3 * i + 2], d = DISTANCE - (m[6] * x + m[7] * y + m[8] * z);
+      out[4 * i] = cam.middle[0] + cam.focal * (m[0] * x + m[1] * y + m[2] * z) / d;
+      out[4 * i + 1] = cam.middle[1] - cam.focal * (m[3] * x + m[4] * y + m[5] * z) / d;
+      out[4 * i + 2] = d;
+      out[4 * i + 3] = d > 0.2 && plane[0] * x + plane[1] * y + plane[2] * z <= plane[3] ? 1 : 0;
+    }
+    return out;
+  };
   const curveWidth = function (c, cam) { return state.width * (c.wide ? 5.2 : 4) * cam.ratio; };
+
+  // Marks, and what was picked: drawn over everything.
+  const MARK_SIZE = 9;
+  const shownMarks = function (layout) {
+    const marks = state.marks ? Array.from(layout.marks) : [];
+    return state.picked && state.picked.layout === state.layout ? marks.concat(state.picked.at) : marks;
+  };
 
   // ---- painter 1: WebGL ------------------------------------------------------------------------
   const webgl = function () {
@@ -178,7 +233,7 @@
       "  float a = alpha < 1.0 ? 1.0 - pow(1.0 - alpha, 1.0 / max(f, 0.12)) : 1.0;\n" +
       "  gl_FragColor = vec4(o, a); }";
     const plain = "precision highp float; varying vec3 p; uniform vec4 plane, paint; void main() { if (dot(p, plane.xyz) > plane.w) discard; gl_FragColor = paint; }";
-    const round = "precision highp float; varying vec3 p; uniform vec4 plane, paint; void main() { if (dot(p, plane.xyz) > plane.w || length(gl_PointCoord - 0.5) > 0.5) discard; gl_FragColor = paint; }";
+    const round = "precision highp float; varying vec3 p, c; uniform vec4 plane; void main() { if (dot(p, plane.xyz) > plane.w || length(gl_PointCoord - 0.5) > 0.5) discard; gl_FragColor = vec4(c, 1.0); }";
     const program = function (vertex, fragment) {
       const out = gl.createProgram();
       [[gl.VERTEX_SHADER, common + vertex], [gl.FRAGMENT_SHADER, fragment]].forEach(function (s) {
@@ -196,15 +251,26 @@
     // A tube: the axis plus an offset whose size is given in pixels, drawn a little towards the viewer.
     const tube = program("attribute vec3 place, offset; uniform float radius; varying vec3 p;\nvoid main() { p = place; vec3 a = eyes(place); float r = radius * (" + DISTANCE + ".0 - a.z); gl_Position = screen(a + r * eyes(offset) + vec3(0.0, 0.0, 0.5 * r)); }", plain);
     const wire = program("attribute vec3 place; varying vec3 p; uniform float lift;\nvoid main() { p = place; vec3 e = eyes(place); gl_Position = screen(e * (1.0 - lift / (" + DISTANCE + ".0 - e.z)) + vec3(0.0, 0.0, lift)); }", plain);
-    const dots = program("attribute vec3 place; varying vec3 p; uniform float size;\nvoid main() { p = place; gl_Position = screen(eyes(place)); gl_PointSize = size; }", round);
+    const dots = program("attribute vec3 place, color; varying vec3 p, c; uniform float size;\nvoid main() { p = place; c = color; gl_Position = screen(eyes(place)); gl_PointSize = size; }", round);
     const buffer = function (data, kind) { const b = gl.createBuffer(); gl.bindBuffer(kind || gl.ARRAY_BUFFER, b); gl.bufferData(kind || gl.ARRAY_BUFFER, data, gl.STATIC_DRAW); return b; };
     const bind = function (prog, name, buf, size, stride, offset) {
       const a = prog.a(name); if (a < 0) return;
       gl.bindBuffer(gl.ARRAY_BUFFER, buf); gl.enableVertexAttribArray(a); gl.vertexAttribPointer(a, size, gl.FLOAT, false, stride || 0, offset || 0);
     };
-    const colors = new Float32Array(9 * count);
-    for (let t = 0; t < count; t++) for (let k = 0; k < 9; k++) colors[9 * t + k] = scene.pieces[pieceOf[t]].color[k % 3] / 255;
-    const colorBuffer = buffer(colors), order = gl.createBuffer();
+    const colorBuffer = gl.createBuffer(), dotBuffer = gl.createBuffer(), order = gl.createBuffer();
+    const fill = function (target, n, color) {
+      const colors = new Float32Array(3 * n);
+      for (let i = 0; i < n; i++) { const c = color(i); for (let k = 0; k < 3; k++) colors[3 * i + k] = c[k] / 255; }
+      gl.bindBuffer(gl.ARRAY_BUFFER, target); gl.bufferData(gl.ARRAY_BUFFER, colors, gl.DYNAMIC_DRAW);
+    };
+    let colorKey = "";
+    const dye = function (layout) {
+      const own = layout.dots === layout.at, key = state.color + (dark() ? " dark " : " light ") + state.layout + state.points;
+      if (key === colorKey) return;
+      colorKey = key;
+      fill(colorBuffer, 3 * count, function (i) { return vertexColor(Math.floor(i / 3), triangles[i]); });
+      if (state.points) fill(dotBuffer, layout.dots.length / 3, function (i) { return dotColor(i, own); });
+    };
     let orderKey = "";
 
     const SIDES = 10;
@@ -280,6 +346,7 @@
         gl.uniform4f(prog.u("lens"), 2 * cam.focal / cam.w, 2 * cam.focal / cam.h, 2 * cam.middle[0] / cam.w - 1, 1 - 2 * cam.middle[1] / cam.h);
         gl.uniform4fv(prog.u("plane"), plane);
       };
+      dye(layout);
       gl.viewport(0, 0, cam.w, cam.h);
       gl.clearColor(b[0] / 255, b[1] / 255, b[2] / 255, 1);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -297,9 +364,8 @@
       });
       if (state.points) {
         use(dots);
-        const k = dark() ? 0.8 : 0.28;
-        gl.uniform4f(dots.u("paint"), k, k, k, 1); gl.uniform1f(dots.u("size"), 3.2 * cam.ratio);
-        bind(dots, "place", g.dots, 3);
+        gl.uniform1f(dots.u("size"), 3.2 * cam.ratio);
+        bind(dots, "place", g.dots, 3); bind(dots, "color", dotBuffer, 3);
         gl.drawArrays(gl.POINTS, 0, g.dotCount);
       }
       const wireframe = function () {
@@ -327,6 +393,17 @@
         gl.depthMask(true);
       }
       wireframe();
+      const marks = shownMarks(layout);
+      if (marks.length) {
+        use(dots);
+        gl.disable(gl.DEPTH_TEST);
+        gl.uniform1f(dots.u("size"), MARK_SIZE * cam.ratio);
+        const at = buffer(new Float32Array(marks)), dye = gl.createBuffer();
+        fill(dye, marks.length / 3, function () { return MARK; });
+        bind(dots, "place", at, 3); bind(dots, "color", dye, 3);
+        gl.drawArrays(gl.POINTS, 0, marks.length / 3);
+        gl.deleteBuffer(at); gl.deleteBuffer(dye);
+      }
     };
   };
 
@@ -336,18 +413,7 @@
     if (!pen) return null;
     return function () {
       const layout = layouts[state.layout], at = layout.at, cam = camera(), m = cam.m, plane = cut(m), b = ground();
-      const project = function (list) {
-        const n = list.length / 3, out = new Float32Array(4 * n);
-        for (let i = 0; i < n; i++) {
-          const x = list[3 * i], y = list[3 * i + 1], z = list[3 * i + 2], d = DISTANCE - (m[6] * x + m[7] * y + m[8] * z);
-          out[4 * i] = cam.middle[0] + cam.focal * (m[0] * x + m[1] * y + m[2] * z) / d;
-          out[4 * i + 1] = cam.middle[1] - cam.focal * (m[3] * x + m[4] * y + m[5] * z) / d;
-          out[4 * i + 2] = d;
-          out[4 * i + 3] = d > 0.2 && plane[0] * x + plane[1] * y + plane[2] * z <= plane[3] ? 1 : 0;
-        }
-        return out;
-      };
-      const S = project(at), things = [];
+      const S = project(at, cam, plane), things = [];
       if (state.opacity > 0) for (let t = 0; t < count; t++) {
         const i = 4 * triangles[3 * t], j = 4 * triangles[3 * t + 1], k = 4 * triangles[3 * t + 2];
         if (state.pieces[pieceOf[t]] && S[i + 3] && S[j + 3] && S[k + 3]) things.push([(S[i + 2] + S[j + 2] + S[k + 2]) / 3, t, -1, 0]);
@@ -360,14 +426,14 @@
           if (S[i + 3] && S[j + 3]) things.push([(S[i + 2] + S[j + 2]) / 2 - lift, e, n, 1]);
         }
       });
-      const D = state.points ? (layout.dots === at ? S : project(layout.dots)) : [];
+      const D = state.points ? (layout.dots === at ? S : project(layout.dots, cam, plane)) : [];
       for (let i = 0; i < D.length; i += 4) if (D[i + 3]) things.push([D[i + 2], i, 0, 2]);
       things.sort(function (p, q) { return q[0] - p[0]; });
       pen.fillStyle = "rgb(" + b + ")";
       pen.fillRect(0, 0, cam.w, cam.h);
       pen.lineJoin = pen.lineCap = "round";
       things.forEach(function (o) {
-        if (o[3] === 2) { pen.fillStyle = dark() ? "#ccc" : "#48484c"; pen.fillRect(D[o[1]] - 1.5, D[o[1] + 1] - 1.5, 3, 3); return; }
+        if (o[3] === 2) { pen.fillStyle = "rgb(" + dotColor(o[1] / 4, layout.dots === at) + ")"; pen.fillRect(D[o[1]] - 1.5, D[o[1] + 1] - 1.5, 3, 3); return; }
         if (o[3] === 1) {
           const c = curves[o[2]], i = 4 * c.edges[o[1]], j = 4 * c.edges[o[1] + 1];
           pen.strokeStyle = "rgb(" + ink(c.color) + ")"; pen.lineWidth = curveWidth(c, cam);
@@ -378,7 +444,7 @@
         let e = [m[0] * n[0] + m[1] * n[1] + m[2] * n[2], m[3] * n[0] + m[4] * n[1] + m[5] * n[2], m[6] * n[0] + m[7] * n[1] + m[8] * n[2]];
         if (e[2] < 0) e = [-e[0], -e[1], -e[2]];
         const shine = (0.40 + 0.60 * Math.max(0, -0.4137 * e[0] + 0.5976 * e[1] + 0.687 * e[2]) + 0.14 * Math.max(0, 0.8137 * e[0] - 0.1162 * e[1] + 0.5695 * e[2])) * (1 - 0.5 * Math.pow(1 - Math.min(1, e[2]), 3));
-        const c = scene.pieces[pieceOf[t]].color.map(function (x) { return Math.min(255, Math.round(x * shine)); });
+        const c = vertexColor(t, triangles[3 * t]).map(function (x) { return Math.min(255, Math.round(x * shine)); });
         pen.globalAlpha = state.opacity;
         pen.fillStyle = "rgb(" + c + ")";
         pen.strokeStyle = state.edges ? "rgba(15,15,20,.5)" : pen.fillStyle;
@@ -388,6 +454,12 @@
         pen.closePath(); pen.fill(); pen.stroke();
         pen.globalAlpha = 1;
       });
+      const M = project(shownMarks(layout), cam, plane);
+      pen.fillStyle = "rgb(" + MARK + ")";
+      for (let i = 0; i < M.length; i += 4) {
+        if (!M[i + 3]) continue;
+        pen.beginPath(); pen.arc(M[i], M[i + 1], MARK_SIZE / 2 * cam.ratio, 0, 7); pen.fill();
+      }
     };
   };
 
@@ -421,8 +493,46 @@
     }
   };
 
+  // ---- picking: the nearest to the viewer of what is drawn close to a place of the page ---------
+  const CLOSE = 10;
+  const told = function (x) { return Math.abs(x) >= 1e5 || (x !== 0 && Math.abs(x) < 1e-3) ? x.toExponential(3) : String(Number(x.toPrecision(5))); };
+  const used = new Uint8Array(layouts[0].places.length / 3);
+  const describe = function (kind, i) {
+    if (kind === "mark") return [scene.layouts[state.layout].mark_texts[i]];
+    const own = kind === "vertex", row = own ? (vertexRows.length ? vertexRows[i] : -1) : pointRows.length ? pointRows[i] : i;
+    const lines = [own ? "vertex " + i + (row < 0 ? ", no row of the points" : ", row " + row + " of the points") : "row " + row + " of the points"];
+    scalars.forEach(function (s) {
+      const list = own ? s.vertices : s.points;
+      if (list.length && isFinite(list[i])) lines.push(s.name + ": " + told(list[i]));
+    });
+    return lines;
+  };
+  const pick = function (x, y) {
+    const layout = layouts[state.layout], cam = camera(), plane = cut(cam.m);
+    let best = null;
+    const look = function (kind, list, wanted) {
+      const S = project(list, cam, plane);
+      for (let i = 0; i < S.length / 4; i++) {
+        if (!S[4 * i + 3] || !wanted(i) || Math.hypot(S[4 * i] / cam.ratio - x, S[4 * i + 1] / cam.ratio - y) > CLOSE) continue;
+        if (!best || S[4 * i + 2] < best.away) best = { kind: kind, i: i, away: S[4 * i + 2], at: [list[3 * i], list[3 * i + 1], list[3 * i + 2]], layout: state.layout };
+      }
+    };
+    if (state.marks) look("mark", layout.marks, function () { return true; });
+    if (!best) {
+      for (let t = 0; t < count; t++) if (state.pieces[pieceOf[t]]) for (let k = 0; k < 3; k++) used[triangles[3 * t + k]] = 1;
+      look("vertex", layout.at, function (i) { return used[i] || count === 0; });
+      if (state.points && layout.dots !== layout.at) look("point", layout.dots, function () { return true; });
+      used.fill(0);
+    }
+    state.picked = best;
+    document.getElementById("picked").textContent = best ? describe(best.kind, best.i).join("\n") : "";
+    redraw();
+  };
+
   // ---- hands ------------------------------------------------------------------------------------------
   const fingers = new Map();
+  // Where a press began that may become a click.
+  let pressed = null;
   const rotate = function (dx, dy) {
     const speed = 0.0075 / Math.max(1, Math.sqrt(state.zoom));
     turn = times(times(about([0, 1, 0], dx * speed), about([1, 0, 0], dy * speed)), turn);
@@ -438,6 +548,7 @@
   canvas.addEventListener("pointerdown", function (e) {
     canvas.setPointerCapture(e.pointerId); canvas.classList.add("held");
     fingers.set(e.pointerId, [e.clientX, e.clientY]);
+    pressed = fingers.size === 1 && e.button === 0 ? [e.clientX, e.clientY] : null;
   });
   canvas.addEventListener("pointermove", function (e) {
     const before = fingers.get(e.pointerId);
@@ -453,6 +564,10 @@
     } else if (e.shiftKey || e.ctrlKey || (e.buttons & 6)) { state.pan[0] += dx; state.pan[1] += dy; } else rotate(dx, dy);
     fingers.set(e.pointerId, [e.clientX, e.clientY]);
     redraw();
+  });
+  canvas.addEventListener("pointerup", function (e) {
+    if (pressed && Math.hypot(e.clientX - pressed[0], e.clientY - pressed[1]) < 4) pick(e.clientX, e.clientY);
+    pressed = null;
   });
   const release = function (e) { fingers.delete(e.pointerId); if (!fingers.size) canvas.classList.remove("held"); };
   canvas.addEventListener("pointerup", release);
@@ -494,7 +609,24 @@
   box("shows", "smooth shading", true, function (on) { state.smooth = on; });
   box("shows", "edges of triangles", false, function (on) { state.edges = on; });
   box("shows", layouts.some(function (l) { return l.points.length; }) ? "sample points" : "vertices", state.points, function (on) { state.points = on; });
+  if (scene.layouts.some(function (l) { return l.mark_texts.length; })) box("shows", "marks", true, function (on) { state.marks = on; }, MARK);
   box("shows", "turn slowly", false, function (on) { state.spin = on; last = performance.now(); });
+  const dyes = document.getElementById("color");
+  ["piece"].concat(scalars.map(function (s) { return s.name; })).forEach(function (name, i) {
+    const o = document.createElement("option"); o.value = i - 1; o.textContent = name; dyes.appendChild(o);
+  });
+  const dyeBy = function (index) {
+    state.color = index; dyes.value = index;
+    const s = scalars[index], scale = document.getElementById("scale");
+    scale.hidden = !s;
+    if (s) {
+      document.getElementById("low").textContent = told(s.low); document.getElementById("high").textContent = told(s.high);
+      document.getElementById("ramp").style.background = "linear-gradient(90deg, " + STOPS.map(function (c) { return "rgb(" + c + ")"; }).join(", ") + ")";
+    }
+    redraw();
+  };
+  dyes.addEventListener("change", function () { dyeBy(Number(dyes.value)); });
+  if (!scalars.length) dyes.parentElement.hidden = true;
   const choice = document.getElementById("layout");
   layouts.forEach(function (l, i) { const o = document.createElement("option"); o.value = i; o.textContent = l.name; choice.appendChild(o); });
   choice.addEventListener("change", function () { state.layout = Number(choice.value); prepare(layouts[state.layout], state.layout); home(); redraw(); });
@@ -526,10 +658,16 @@
       const input = document.getElementById(part[0]); if (input) input.value = value;
     }
     if (w === "edges") { state.edges = true; document.querySelectorAll("#shows input")[1].checked = true; }
+    if (part[0] === "color") dyeBy(scalars.findIndex(function (s) { return s.name === decodeURIComponent(part[1]); }));
     if (w === "points") { state.points = true; document.querySelectorAll("#shows input")[2].checked = true; }
     if (w === "dark" || w === "light") theme(w);
   });
   prepare(layouts[state.layout], state.layout);
   const zoomed = state.zoom; home(); state.zoom = zoomed;
+  words.forEach(function (w) {
+    // As shares of width and height.
+    const part = /^pick=([\d.]+):([\d.]+)$/.exec(w);
+    if (part) { paint(); pick(Number(part[1]) * canvas.clientWidth, Number(part[2]) * canvas.clientHeight); }
+  });
   redraw();
 })();

@@ -14,7 +14,8 @@ const SCRIPT: &str = include_str!("page.js");
 ///
 /// On the page the mesh is turned, zoomed and moved by mouse, touch or keys; pieces and curves are switched on and
 /// off by name; it is made transparent, cut open by a plane, shown with edges and sample points,
-/// in any of its layouts, on a light or dark ground. Facts stand in a table. It draws with
+/// in any of its layouts, colored by piece or by a scalar, on a light or dark ground. A click on a vertex, a point or a mark
+/// tells its row, its scalars, its text. Facts stand in a table. It draws with
 /// WebGL, or without it on a plain canvas. A content security policy in the page forbids it any request.
 ///
 /// Numbers are embedded as 32-bit values in base64: 16 bytes a triangle for corners, 5.3 for
@@ -60,6 +61,9 @@ pub fn page(scene: &Scene) -> Result<String, Error> {
 <aside id="panel">
 <h1>{title}</h1>
 <label for="layout">Layout <select id="layout"></select></label>
+<label for="color">Color by <select id="color"></select></label>
+<div id="scale" hidden><span id="low"></span><span id="ramp"></span><span id="high"></span></div>
+<div id="picked" aria-live="polite"></div>
 <h2>Pieces</h2>
 <div id="pieces"></div>
 <div id="curves"></div>
@@ -71,7 +75,7 @@ pub fn page(scene: &Scene) -> Result<String, Error> {
 <label>from <select id="axis"><option value="view">the viewer</option><option value="x">first axis</option><option value="y">second axis</option><option value="z">third axis</option></select></label>
 <label>keep <input id="keep" type="range" min="0" max="1" step="0.005" value="1"></label>
 {facts}<div class="row"><button id="home" type="button">Reset view</button><button id="theme" type="button">Dark / light</button><button id="save" type="button">Save picture</button></div>
-<div id="hint">Drag to turn, wheel or pinch to zoom, right button or two fingers to move, double click to reset.</div>
+<div id="hint">Drag to turn, click on a vertex or a point for its row, wheel or pinch to zoom, right button or two fingers to move, double click to reset.</div>
 <div id="trouble"></div>
 </aside>
 <noscript>Turning the mesh needs JavaScript.</noscript>
@@ -90,7 +94,8 @@ fn data(scene: &Scene) -> Value {
     let layouts: Vec<Value> = scene
         .layouts
         .iter()
-        .map(|layout| {
+        .enumerate()
+        .map(|(index, layout)| {
             let used = scene.used(layout.places.len());
             let frame = Frame::of(
                 layout
@@ -110,11 +115,14 @@ fn data(scene: &Scene) -> Value {
                 .iter()
                 .flat_map(|r| [r.x, r.y, r.z])
                 .collect();
+            let marks = || scene.marks.iter().filter(|mark| mark.layout == index);
             let [x, y, z] = frame.middle();
             json!({
                 "name": layout.name,
                 "places": base64(layout.places.iter().flatten().flat_map(|c| c.to_le_bytes())),
                 "points": base64(layout.points.iter().flatten().flat_map(|c| c.to_le_bytes())),
+                "marks": base64(marks().flat_map(|m| m.place).flat_map(|c| c.to_le_bytes())),
+                "mark_texts": marks().map(|m| m.text.as_str()).collect::<Vec<_>>(),
                 "frame": [x, y, z, frame.half()],
                 "view": rows,
             })
@@ -138,7 +146,16 @@ fn data(scene: &Scene) -> Value {
             })
         })
         .collect();
+    let floats = |list: &[f32]| base64(list.iter().flat_map(|x| x.to_le_bytes()));
+    let scalars: Vec<Value> = scene
+        .scalars
+        .iter()
+        .map(|s| json!({ "name": s.name, "vertices": floats(&s.vertices), "points": floats(&s.points) }))
+        .collect();
     json!({
+        "scalars": scalars,
+        "vertex_rows": base64(scene.vertex_rows.iter().flat_map(|r| r.to_le_bytes())),
+        "point_rows": base64(scene.point_rows.iter().flat_map(|r| r.to_le_bytes())),
         "layouts": layouts,
         "triangles": base64(scene.triangles.iter().flatten().flat_map(|v| v.to_le_bytes())),
         "triangle_piece": base64(scene.triangle_piece.iter().flat_map(|v| v.to_le_bytes())),

@@ -43,6 +43,9 @@ pub fn curve_color(kind: CurveKind) -> [u8; 3] {
     }
 }
 
+/// Color of a mark in red, green, blue: the red of the page.
+pub const MARK: [u8; 3] = [214, 32, 32];
+
 #[cfg(test)]
 mod tests {
     use super::*;

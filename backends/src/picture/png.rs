@@ -1,5 +1,6 @@
 //! A still image.
 
+use super::palette::MARK;
 use super::raster::{Corner, Face, Line, Picture};
 use super::scene::Frame;
 use super::shade::corner_normals;
@@ -392,6 +393,17 @@ fn compose(scene: &Scene, width: usize, height: usize, options: &StillOptions) -
             let [a, b] = e.map(|v| camera[v as usize]);
             stage.line(&mut lines, a, b, like);
         }
+    }
+    for mark in scene.marks.iter().filter(|m| m.layout == options.layout) {
+        let place = view.of(Vector3::from(frame.place(wide(mark.place))));
+        let dot = Line {
+            radius: curve_width * 0.8,
+            color: MARK,
+            hidden: curve_width * 0.4,
+            strength: 1.0,
+            ..thin
+        };
+        stage.line(&mut lines, place, place, dot);
     }
     Picture {
         faces,

@@ -98,6 +98,28 @@ impl Layout {
     }
 }
 
+/// A number at every vertex, at every sample point, or both, by which a page can color them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneScalar {
+    /// Its name, as the reader chooses it: "height", "dimension".
+    pub name: String,
+    /// Its values at the vertices, NaN where there is none; empty when vertices have none at all.
+    pub vertices: Vec<f32>,
+    /// Its values at the sample points, likewise.
+    pub points: Vec<f32>,
+}
+
+/// A place that a reader should look at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// The layout that it is shown in.
+    pub layout: usize,
+    /// Where, in the coordinates of this layout.
+    pub place: [f32; 3],
+    /// What is to be said about it; any text.
+    pub text: String,
+}
+
 /// What there is to see, for [`super::page`] and [`super::still`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
@@ -116,6 +138,14 @@ pub struct Scene {
     pub piece_names: Vec<String>,
     /// Curves, drawn in this order.
     pub curves: Vec<Curve>,
+    /// Numbers by which vertices and sample points can be colored.
+    pub scalars: Vec<SceneScalar>,
+    /// For each vertex the row of the input that it stands for, -1 for none; empty when nothing is known.
+    pub vertex_rows: Vec<i32>,
+    /// For each sample point its row of the input; empty when all rows are shown.
+    pub point_rows: Vec<u32>,
+    /// Places to look at.
+    pub marks: Vec<Mark>,
 }
 
 impl Scene {
@@ -142,6 +172,7 @@ impl Scene {
             triangle_piece: vec![0; complex.triangles.len()],
             piece_names: vec!["surface".into()],
             curves,
+            ..Self::default()
         }
     }
 
@@ -149,8 +180,8 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::Shape`] when there is no layout, two layouts differ in their number of places, or
-    /// triangles and their pieces differ in number; [`Error::Index`] for a vertex or piece out of range;
-    /// [`Error::NotFinite`] for a place with a NaN or an infinity.
+    /// triangles and their pieces, or vertices or points and their rows or scalars, differ in number; [`Error::Index`] for a
+    /// vertex, piece or layout out of range; [`Error::NotFinite`] for a place with a NaN or an infinity.
     pub fn check(&self) -> Result<(), Error> {
         let Some(first) = self.layouts.first() else {
             return Err(Error::Shape {
@@ -180,6 +211,7 @@ impl Scene {
                 expected: format!("{}, one a triangle", self.triangles.len()),
             });
         }
+        self.check_rows(count)?;
         let limit = self.piece_names.len();
         if let Some(&p) = self.triangle_piece.iter().find(|&&p| p as usize >= limit) {
             return Err(Error::Index {
@@ -198,6 +230,43 @@ impl Scene {
             }),
             None => Ok(()),
         }
+    }
+
+    /// Whether rows, scalars and marks fit to the vertices, the points and the layouts.
+    fn check_rows(&self, count: usize) -> Result<(), Error> {
+        let points = self.layouts.iter().map(|l| l.points.len()).max();
+        let points = points.unwrap_or(0);
+        let rows = [
+            ("rows of vertices", self.vertex_rows.len(), count),
+            ("rows of points", self.point_rows.len(), points),
+        ];
+        let scalars = self.scalars.iter().flat_map(|s| {
+            [
+                ("scalars of vertices", s.vertices.len(), count),
+                ("scalars of points", s.points.len(), points),
+            ]
+        });
+        for (what, found, expected) in rows.into_iter().chain(scalars) {
+            if found != 0 && found != expected {
+                return Err(Error::Shape {
+                    found: format!("{found} {what}"),
+                    expected: format!("{expected}, or none"),
+                });
+            }
+        }
+        for mark in &self.marks {
+            if mark.layout >= self.layouts.len() {
+                return Err(Error::Index {
+                    what: "layout",
+                    index: mark.layout,
+                    limit: self.layouts.len(),
+                });
+            }
+            if let Some(column) = mark.place.iter().position(|c| !c.is_finite()) {
+                return Err(Error::NotFinite { row: 0, column });
+            }
+        }
+        Ok(())
     }
 
     /// Which of `count` vertices are drawn: those of triangles and curves, or all when there are none.
@@ -365,7 +434,7 @@ mod tests {
             ..Scene::default()
         };
         good.check().unwrap();
-        let spoilt: [fn(&mut Scene); 8] = [
+        let spoilt: [fn(&mut Scene); 12] = [
             |s| s.layouts.clear(),
             |s| s.layouts[0].places[1][2] = f32::NAN,
             |s| s.layouts[0].points.push([f32::INFINITY, 0.0, 0.0]),
@@ -373,6 +442,21 @@ mod tests {
             |s| s.curves[0].edges[0][0] = 9,
             |s| s.triangle_piece[0] = 1,
             |s| s.triangle_piece.clear(),
+            |s| s.vertex_rows = vec![0; 2],
+            |s| s.point_rows = vec![0; 3],
+            |s| {
+                s.scalars.push(SceneScalar {
+                    vertices: vec![0.0; 4],
+                    ..SceneScalar::default()
+                })
+            },
+            |s| {
+                s.marks.push(Mark {
+                    layout: 1,
+                    place: [0.0; 3],
+                    text: String::new(),
+                })
+            },
             |s| {
                 s.layouts.push(Layout {
                     name: "b".into(),

@@ -174,6 +174,11 @@ const CLOSE: f64 = 1e-6;
 /// laws::chart(&Settings::default(), &MyChart).unwrap();
 /// ```
 pub fn chart(settings: &Settings, chart: &impl LocalChart) -> Result<(), Failures> {
+    laws(settings, chart)
+}
+
+/// The laws themselves, compiled once and not for every chart that is tested.
+fn laws(settings: &Settings, chart: &dyn LocalChart) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &ALL);
     let drawn = |cloud: &PointCloud<f64>, dimension: usize| {
         let made = chart.chart(cloud.len(), &matrix(cloud), dimension);

@@ -129,6 +129,11 @@ fn clear(pair: &LatticePair) -> bool {
 /// laws::compatibility(&Settings::default(), &MyTest).unwrap();
 /// ```
 pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Result<(), Failures> {
+    laws(settings, test)
+}
+
+/// The laws themselves, compiled once and not for every test that is tested.
+fn laws(settings: &Settings, test: &dyn CompatibilityTest) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &ALL);
     let pairs = lattice_pairs();
     found.put(SYMMETRY.holds(settings, &pairs, |pair| {

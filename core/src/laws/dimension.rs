@@ -2,14 +2,16 @@
 
 use super::inputs::{FlatSample, flat_samples, ranks};
 use super::motion::{Motion, motions, principal};
-use super::reference::{StraightLine, rounding, sort};
+use super::reference::{Scan, StraightLine, rounding, sort};
 use super::settings::{Outcome, ensure};
 use super::{Failures, Findings, Law, Settings};
+use crate::execute::Serial;
 use crate::{
-    DimensionEstimate, DimensionEstimator, Error, MetricSpace, Neighbor, Neighborhood, PointCloud,
-    Scalar,
+    Balls, DimensionEstimate, DimensionEstimator, Error, MetricSpace, Neighbor, Neighborhood,
+    PointCloud, Radii, Scalar,
 };
 use proptest::prelude::*;
+use std::sync::Mutex;
 
 const SUBJECT: &str = "DimensionEstimator";
 
@@ -76,8 +78,19 @@ static VARIANCES: Law = Law {
                roots, or in rising order; a share of N where fewer variances than coordinates are given",
 };
 
-pub(super) static ALL: [&Law; 7] = [
-    &ANSWER, &ROUNDED, &MOTION, &SCALE, &EMBEDDING, &ORDER, &VARIANCES,
+/// Batch.
+static BATCH: Law = Law {
+    subject: SUBJECT,
+    name: "batch",
+    says: "of all balls of a cloud together estimate_all says what estimate says of each, with the number of points in \
+           it (where the dimension is 2 that of a ball close by will do), and refuses what estimate refuses",
+    look_for: "a radius taken for all balls where each has its own; a ball that takes points at distance = radius; the \
+               places of a metric that is not the straight line between them (ask MetricSpace::places, not the cloud); \
+               answers in the order of a tree",
+};
+
+pub(super) static ALL: [&Law; 8] = [
+    &ANSWER, &ROUNDED, &MOTION, &SCALE, &EMBEDDING, &ORDER, &VARIANCES, &BATCH,
 ];
 
 /// The neighborhood of the first point that holds all.
@@ -110,7 +123,7 @@ impl<S: Scalar> Ball<S> {
 
     fn estimate(
         &self,
-        estimator: &impl DimensionEstimator<Scalar = S>,
+        estimator: &dyn DimensionEstimator<Scalar = S>,
     ) -> Result<DimensionEstimate, Error> {
         estimator.estimate(&Neighborhood {
             center: self.center,
@@ -184,6 +197,14 @@ pub fn estimator<D: DimensionEstimator>(
     settings: &Settings,
     estimator: &D,
 ) -> Result<(), Failures> {
+    laws(settings, estimator)
+}
+
+/// The laws themselves, compiled once a type of coordinates and not for every estimator that is tested.
+fn laws<S: Scalar>(
+    settings: &Settings,
+    estimator: &dyn DimensionEstimator<Scalar = S>,
+) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &ALL);
     let usable = |estimate: &DimensionEstimate| -> Outcome {
         ensure!(
@@ -231,7 +252,7 @@ pub fn estimator<D: DimensionEstimator>(
                 let (motion, factor) = change(motion, 10_f64.powi(*exponent));
                 let dimension = cloud.dimension() + more;
                 let image = motion.image(cloud, dimension, factor);
-                same::<D::Scalar>(&ask(cloud, 0), &ask(&image, 0))
+                same::<S>(&ask(cloud, 0), &ask(&image, 0))
             })
         };
     let still = |_: &Motion, factor: f64| {
@@ -251,11 +272,11 @@ pub fn estimator<D: DimensionEstimator>(
             let cloud = &sample.cloud;
             let order = ranks(&keys[..cloud.len()]);
             let center = order.iter().position(|&k| k == 0).unwrap_or(0);
-            same::<D::Scalar>(&ask(cloud, 0), &ask(&cloud.select(&order), center))
+            same::<S>(&ask(cloud, 0), &ask(&cloud.select(&order), center))
         }),
     );
     found.put(VARIANCES.holds(settings, &flat_samples(), |sample| {
-        let cloud = sample.cloud.cast::<D::Scalar>().cast::<f64>();
+        let cloud = sample.cloud.cast::<S>().cast::<f64>();
         let (n, count) = (cloud.dimension(), cloud.len());
         let rows = principal(n, cloud.coordinates(), count);
         let variance = |axis: usize| {
@@ -264,18 +285,113 @@ pub fn estimator<D: DimensionEstimator>(
         };
         let variances: Vec<f64> = (0..n).map(variance).collect();
         match estimator.of_variances(&variances) {
-            Some(answer) => same::<D::Scalar>(&ask(&sample.cloud, 0), &Ok(answer))
+            Some(answer) => same::<S>(&ask(&sample.cloud, 0), &Ok(answer))
                 .map_err(|e| format!("{e}, from the variances {variances:?}")),
             None => Ok(()),
         }
     }));
+    let inputs = (flat_samples(), 0.3..3.0_f64, any::<bool>(), any::<bool>());
+    found.put(
+        BATCH.holds(settings, &inputs, |(sample, radius, each, straight)| {
+            batch(estimator, &sample.cloud, *radius, *each, *straight)
+        }),
+    );
     found.end()
+}
+
+/// Straight-line distances that say so.
+struct Placed<S>(StraightLine<S>);
+
+impl<S: Scalar> MetricSpace for Placed<S> {
+    type Scalar = S;
+    fn len(&self) -> usize {
+        self.0.len()
+    }
+    fn distance(&self, a: usize, b: usize) -> S {
+        self.0.distance(a, b)
+    }
+    fn places(&self) -> Option<&PointCloud<S>> {
+        Some(&self.0.0)
+    }
+    fn name(&self) -> &str {
+        "straight line"
+    }
+}
+
+/// All balls of a cloud together and one by one: of one radius or of `each` its own, by distances along straight
+/// lines or by half of them, which belong to no places.
+fn batch<S: Scalar>(
+    estimator: &dyn DimensionEstimator<Scalar = S>,
+    cloud: &PointCloud<f64>,
+    radius: f64,
+    each: bool,
+    straight: bool,
+) -> Outcome {
+    let places = cloud.cast::<S>();
+    let half = cloud.coordinates().iter().map(|x| S::of(0.5 * x)).collect();
+    let half = PointCloud::new(cloud.dimension(), half).map_err(|e| e.to_string())?;
+    let placed = Placed(StraightLine(places.clone()));
+    let halved = StraightLine(half);
+    let (near_placed, near_halved) = (Scan(&placed), Scan(&halved));
+    let radii: Vec<f64> = (0..cloud.len())
+        .map(|k| radius * (1.0 - 0.5 / (k + 1) as f64))
+        .collect();
+    let balls = Balls {
+        metric: if straight { &placed } else { &halved },
+        oracle: if straight { &near_placed } else { &near_halved },
+        cloud: Some(&places),
+        radii: if each {
+            Radii::Each(&radii)
+        } else {
+            Radii::Same(radius)
+        },
+        least: 4,
+    };
+    let confidence: Mutex<Vec<f64>> = Mutex::new(Vec::new());
+    let alone = balls.one_by_one(estimator.name(), &Serial, |ball| {
+        let answer = estimator.estimate(ball)?;
+        if let Ok(mut list) = confidence.lock() {
+            list.push(answer.confidence);
+        }
+        Ok(answer)
+    });
+    let together = estimator.estimate_all(&balls, &Serial).and_then(|found| {
+        let counts = found.iter().map(|ball| ball.neighbors as usize);
+        let enough = counts.enumerate().try_for_each(|(k, n)| balls.enough(k, n));
+        enough.map(|()| found)
+    });
+    let (alone, together) = match (alone, together) {
+        (Ok(alone), Ok(together)) => (alone, together),
+        (Err(_), Err(_)) => return Ok(()),
+        (Ok(_), Err(e)) => return Err(format!("each ball has an answer, all together: '{e}'")),
+        (Err(e), Ok(_)) => return Err(format!("all together have answers, alone: '{e}'")),
+    };
+    ensure!(
+        together.len() == alone.len(),
+        "{} answers for {} balls",
+        together.len(),
+        alone.len()
+    );
+    let tolerance = 32.0 * rounding::<S>().sqrt();
+    let confidence = confidence.lock().map_or(Vec::new(), |list| list.clone());
+    for (k, (a, b)) in alone.iter().zip(&together).enumerate() {
+        // A toss-up may fall either way.
+        let toss_up = confidence.get(k).is_some_and(|&c| c < tolerance);
+        let counted = b.dimension == 2 || a.neighbors == b.neighbors;
+        ensure!(
+            toss_up || a.dimension == b.dimension && counted,
+            "the ball about point {k}: {a:?} alone, {b:?} of all together"
+        );
+    }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::twins::{catches, quick};
     use super::*;
+    use crate::BallDimension;
+    use crate::execute::Execute;
 
     /// Reads the dimension off a number made from the neighborhood.
     struct Read(fn(&Neighborhood<'_, f64>) -> f64);
@@ -446,6 +562,82 @@ mod tests {
         }
         estimator(&quick(), &Spread { of_roots: false }).unwrap();
         catches(estimator(&quick(), &Spread { of_roots: true }), &VARIANCES);
+    }
+
+    #[test]
+    fn a_batch_with_answers_of_its_own_is_caught() {
+        #[derive(Clone, Copy)]
+        enum Fault {
+            None,
+            /// One radius for balls that have radii of their own.
+            Radius,
+            /// The cloud in place of the metric.
+            Cloud,
+            /// Answers from the last to the first.
+            Order,
+        }
+        /// Half of the points of a ball, at most 3; the dimension is never 2.
+        struct Counted(Fault);
+        impl Counted {
+            fn of(neighbors: usize) -> usize {
+                if neighbors > 9 { 3 } else { 1 }
+            }
+        }
+        impl DimensionEstimator for Counted {
+            type Scalar = f64;
+            fn estimate(&self, around: &Neighborhood<'_, f64>) -> Result<DimensionEstimate, Error> {
+                let dimension = Self::of(around.neighbors.len());
+                Ok(DimensionEstimate {
+                    dimension,
+                    value: dimension as f64,
+                    confidence: 1.0,
+                    spectrum: vec![],
+                })
+            }
+            fn estimate_all(
+                &self,
+                balls: &Balls<'_, f64>,
+                _execute: &dyn Execute,
+            ) -> Result<Vec<BallDimension>, Error> {
+                let straight = StraightLine(balls.cloud.unwrap().clone());
+                let own = |k: usize| {
+                    let radius = match self.0 {
+                        Fault::Radius => balls.radii.of(0),
+                        _ => balls.radii.of(k),
+                    };
+                    let all = 0..balls.len();
+                    let near = |&j: &usize| match self.0 {
+                        Fault::Cloud => straight.distance(k, j) < radius,
+                        _ => balls.metric.distance(k, j) < radius,
+                    };
+                    let neighbors = all.filter(near).count();
+                    balls.enough(k, neighbors)?;
+                    Ok(BallDimension {
+                        neighbors: neighbors as u32,
+                        dimension: Self::of(neighbors) as u32,
+                    })
+                };
+                let mut all: Vec<_> = (0..balls.len()).map(own).collect::<Result<_, Error>>()?;
+                if matches!(self.0, Fault::Order) {
+                    all.reverse();
+                }
+                Ok(all)
+            }
+            fn name(&self) -> &str {
+                "counted"
+            }
+        }
+        let put = |fault| {
+            let settings = Settings {
+                only: Some("batch"),
+                ..quick()
+            };
+            estimator(&settings, &Counted(fault))
+        };
+        put(Fault::None).unwrap();
+        for fault in [Fault::Radius, Fault::Cloud, Fault::Order] {
+            catches(put(fault), &BATCH);
+        }
     }
 
     #[test]

@@ -129,9 +129,17 @@ fn questions() -> impl Strategy<Value = Question> {
 /// laws::selector(&Settings::default(), &InTurn).unwrap();
 /// ```
 pub fn selector<L: LandmarkSelector>(settings: &Settings, selector: &L) -> Result<(), Failures> {
+    laws(settings, selector)
+}
+
+/// The laws themselves, compiled once a type of distances and not for every selector that is tested.
+fn laws<S: Scalar>(
+    settings: &Settings,
+    selector: &dyn LandmarkSelector<Scalar = S>,
+) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &ALL);
     let questions = questions();
-    let metric = |question: &Question| StraightLine(question.cloud.cast::<L::Scalar>());
+    let metric = |question: &Question| StraightLine(question.cloud.cast::<S>());
     let select = |q: &Question, separation: f64| {
         selector.select(
             &Scan(metric(q)),

@@ -83,7 +83,8 @@ macro_rules! law_tests {
             scale "scale",
             embedding "embedding",
             order "order",
-            variances "variances" }
+            variances "variances",
+            batch "batch" }
     };
     (@laws model $($then:tt)+) => {
         $crate::law_tests! { $($then)+
@@ -121,6 +122,13 @@ macro_rules! law_tests {
             reference "reference",
             agreement "agreement" }
     };
+    (@laws triangulator $($then:tt)+) => {
+        $crate::law_tests! { $($then)+
+            answer "answer",
+            reproducible "reproducible",
+            scale "scale",
+            told "told" }
+    };
     (@laws rule $($then:tt)+) => {
         $crate::law_tests! { $($then)+
             symmetry "symmetry",
@@ -152,6 +160,7 @@ mod tests {
         check("LocalChart", &law_tests!(@laws chart @names));
         check("LandmarkSelector", &law_tests!(@laws selector @names));
         check("CompatibilityTest", &law_tests!(@laws compatibility @names));
+        check("Triangulator", &law_tests!(@laws triangulator @names));
         check("TriangleRule", &law_tests!(@laws rule @names));
     }
 

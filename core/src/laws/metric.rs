@@ -84,6 +84,14 @@ pub fn metric<M: MetricSpace>(
     settings: &Settings,
     build: impl Fn(&PointCloud<f64>) -> M,
 ) -> Result<(), Failures> {
+    laws(settings, &|cloud| Box::new(build(cloud)))
+}
+
+/// A metric over the points of a cloud.
+type Build<'b, 'm, S> = dyn Fn(&PointCloud<f64>) -> Box<dyn MetricSpace<Scalar = S> + 'm> + 'b;
+
+/// The laws themselves, compiled once a type of distances and not for every metric that is tested.
+fn laws<S: Scalar>(settings: &Settings, build: &Build<'_, '_, S>) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &ALL);
     let clouds = clouds(1..=5, 1..=9);
     // What the test says of a pair and its distances, both ways.
@@ -118,7 +126,7 @@ pub fn metric<M: MetricSpace>(
             .collect();
         let d = |a: usize, b: usize| all[a * n + b];
         // A few roundings a coordinate in each of the three.
-        let slack = 64.0 * rounding::<M::Scalar>();
+        let slack = 64.0 * rounding::<S>();
         for a in 0..n {
             for b in 0..n {
                 for c in a + 1..n {
@@ -140,7 +148,7 @@ pub fn metric<M: MetricSpace>(
         let n = metric.len();
         // Backwards, and the first one twice.
         let to: Vec<usize> = (0..n).rev().chain(n.checked_sub(1)).collect();
-        let mut out = vec![M::Scalar::of(-1.0)];
+        let mut out = vec![S::of(-1.0)];
         for from in 0..n {
             metric.distances_to(from, &to, &mut out);
             let alone: Vec<f64> = (to.iter().map(|&b| metric.distance(from, b).as_f64())).collect();
@@ -154,7 +162,7 @@ pub fn metric<M: MetricSpace>(
     }));
     found.put(PLACES.holds(settings, &clouds, |cloud| {
         let metric = build(cloud);
-        let (n, slack) = (metric.len(), 64.0 * rounding::<M::Scalar>());
+        let (n, slack) = (metric.len(), 64.0 * rounding::<S>());
         let Some(places) = metric.places() else {
             return Ok(());
         };

@@ -33,6 +33,7 @@
 //! | [`LandmarkSelector`](crate::LandmarkSelector) | [`selector()`] | the selector |
 //! | [`CompatibilityTest`](crate::CompatibilityTest) | [`compatibility()`] | the test |
 //! | [`TriangleRule`](crate::TriangleRule) | [`rule()`] | the rule |
+//! | [`Triangulator`](crate::Triangulator) | [`triangulator()`] | the triangulator |
 //! | whole reconstructions, quantities of complexes | [`reconstruction()`], [`topology()`], [`relabelling()`] | a function |
 //! | Betti numbers | [`euler_poincare()`] | a complex and its Betti numbers |
 //!
@@ -67,6 +68,7 @@ mod result;
 mod rule;
 mod settings;
 mod singularity;
+mod triangulation;
 #[cfg(test)]
 mod twins;
 
@@ -84,6 +86,7 @@ pub use result::{euler_poincare, reconstruction, relabelling, topology};
 pub use rule::rule;
 pub use settings::Settings;
 pub use singularity::{Instances, model};
+pub use triangulation::triangulator;
 
 /// All laws of the kit, by trait.
 ///
@@ -92,7 +95,7 @@ pub use singularity::{Instances, model};
 /// assert!(laws.iter().any(|l| l.subject == "MetricSpace" && l.name == "symmetry"));
 /// ```
 pub fn all() -> Vec<&'static Law> {
-    let traits: [&[&'static Law]; 9] = [
+    let traits: [&[&'static Law]; 10] = [
         &metric::ALL,
         &neighborhood::ALL,
         &dimension::ALL,
@@ -101,6 +104,7 @@ pub fn all() -> Vec<&'static Law> {
         &landmarks::ALL,
         &compatibility::ALL,
         &rule::ALL,
+        &triangulation::ALL,
         &result::ALL,
     ];
     traits.concat()

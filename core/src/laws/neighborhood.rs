@@ -144,6 +144,20 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
     settings: &Settings,
     build: impl Fn(&PointCloud<f64>) -> (M, O),
 ) -> Result<(), Failures> {
+    laws(settings, &|cloud| {
+        let (metric, oracle) = build(cloud);
+        (Box::new(metric), Box::new(oracle))
+    })
+}
+
+/// What an oracle claims to serve.
+type Served<'m, S> = Box<dyn MetricSpace<Scalar = S> + 'm>;
+/// A metric and an oracle over the points of a cloud.
+type Build<'b, 'm, S> =
+    dyn Fn(&PointCloud<f64>) -> (Served<'m, S>, Box<dyn NeighborhoodOracle<Scalar = S> + 'm>) + 'b;
+
+/// The laws themselves, compiled once a type of distances and not for every oracle that is tested.
+fn laws<S: Scalar>(settings: &Settings, build: &Build<'_, '_, S>) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &ALL);
     let queries = queries();
     type Answers<S> = [Vec<Neighbor<S>>; 2];
@@ -151,20 +165,20 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
         vec![
             Neighbor {
                 index: 977,
-                distance: M::Scalar::of(0.5)
+                distance: S::of(0.5)
             };
             3
         ]
     };
-    let radius_of = |metric: &M, query: &Query| {
+    let radius_of = |metric: &Served<'_, S>, query: &Query| {
         let rim = metric.distance(query.center, query.rim).as_f64();
-        M::Scalar::of(rim * query.factor)
+        S::of(rim * query.factor)
     };
     // Asks both questions of the oracle and of the scan; the buffers hold `before`.
-    let asked = |query: &Query, before: &[Neighbor<M::Scalar>]| {
+    let asked = |query: &Query, before: &[Neighbor<S>]| {
         let (metric, oracle) = build(&query.cloud);
         let radius = radius_of(&metric, query);
-        let scan = Scan(&metric);
+        let scan = Scan(metric.as_ref());
         let (mut found, mut expected) = ([before.to_vec(), before.to_vec()], [vec![], vec![]]);
         oracle.within(query.center, radius, &mut found[0]);
         oracle.nearest(query.center, query.count, &mut found[1]);
@@ -172,7 +186,7 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
         scan.nearest(query.center, query.count, &mut expected[1]);
         (radius.as_f64(), found, expected)
     };
-    let show = |n: &[Neighbor<M::Scalar>]| -> String {
+    let show = |n: &[Neighbor<S>]| -> String {
         let parts: Vec<String> = n
             .iter()
             .map(|n| format!("{} at {}", n.index, n.distance.as_f64()))
@@ -219,13 +233,13 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
     found.put(ORDER.holds(settings, &queries, |query| {
         let (radius, found, _) = asked(query, &[]);
         for (k, found) in found.iter().enumerate() {
-            let key = |n: &Neighbor<M::Scalar>| (n.distance.as_f64(), n.index);
+            let key = |n: &Neighbor<S>| (n.distance.as_f64(), n.index);
             let sorted = found.windows(2).all(|w| key(&w[0]) < key(&w[1]));
             ensure!(sorted, "{} is {}", question(k, radius, query), show(found));
         }
         Ok(())
     }));
-    let distances = |n: &[Neighbor<M::Scalar>]| -> Vec<u64> {
+    let distances = |n: &[Neighbor<S>]| -> Vec<u64> {
         n.iter().map(|n| n.distance.as_f64().to_bits()).collect()
     };
     found.put(TIES.holds(settings, &queries, |query| {
@@ -263,8 +277,8 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
     found.put(PLACES.holds(settings, &queries, |query| {
         let (metric, oracle) = build(&query.cloud);
         let radius = radius_of(&metric, query);
-        let place: Vec<M::Scalar> = (query.cloud.point(query.center).iter())
-            .map(|&x| M::Scalar::of(x))
+        let place: Vec<S> = (query.cloud.point(query.center).iter())
+            .map(|&x| S::of(x))
             .collect();
         let (mut found, mut expected) = (junk(), vec![]);
         if oracle.within_of(&place, radius, &mut found) {
@@ -307,7 +321,7 @@ pub fn oracle<M: MetricSpace, O: NeighborhoodOracle<Scalar = M::Scalar>>(
         );
         for share in [0.0, 0.5] {
             let between = p.iter().zip(q).map(|(x, y)| x + share * (y - x));
-            let place: Vec<M::Scalar> = between.map(M::Scalar::of).collect();
+            let place: Vec<S> = between.map(S::of).collect();
             let mut near = vec![];
             let some = oracle.within_of(&place, radius, &mut near) && !near.is_empty();
             let said = oracle.is_near(&place, radius);

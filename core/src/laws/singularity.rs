@@ -148,7 +148,7 @@ struct Case {
 type Answer = Result<Decomposition, Rejection>;
 
 /// Whether what a model says can be true.
-fn well_formed(d: &Decomposition, instance: &Instance, model: &impl SingularityModel) -> Outcome {
+fn well_formed(d: &Decomposition, instance: &Instance, model: &dyn SingularityModel) -> Outcome {
     (d.check(&instance.local())).map_err(|wrong| format!("{}: {}", wrong.law, wrong.found))?;
     ensure!(
         !model.finds_boundary() || d.cells_at_curve.iter().all(|&cells| cells == 1),
@@ -270,7 +270,7 @@ fn same(
 }
 
 /// Whether a model says of rows what it says of them as the center.
-fn about(model: &impl SingularityModel, instance: &Instance, rows: &[usize]) -> Outcome {
+fn about(model: &dyn SingularityModel, instance: &Instance, rows: &[usize]) -> Outcome {
     let local = instance.local();
     let (whole, together) = (model.decompose(&local), model.decompose_about(&local, rows));
     let (fit, located) = match (whole, together) {
@@ -354,6 +354,15 @@ fn about(model: &impl SingularityModel, instance: &Instance, rows: &[usize]) -> 
 pub fn model(
     settings: &Settings,
     model: &impl SingularityModel,
+    instances: &Instances<'_>,
+) -> Result<(), Failures> {
+    laws(settings, model, instances)
+}
+
+/// The laws themselves, compiled once and not for every model that is tested.
+fn laws(
+    settings: &Settings,
+    model: &dyn SingularityModel,
     instances: &Instances<'_>,
 ) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &ALL);

@@ -3,7 +3,7 @@
 use super::{Failures, Law, LawBroken, Settings};
 
 /// Sources of the modules that state laws.
-const SOURCES: [&str; 9] = [
+const SOURCES: [&str; 10] = [
     include_str!("metric.rs"),
     include_str!("neighborhood.rs"),
     include_str!("dimension.rs"),
@@ -12,6 +12,7 @@ const SOURCES: [&str; 9] = [
     include_str!("landmarks.rs"),
     include_str!("compatibility.rs"),
     include_str!("rule.rs"),
+    include_str!("triangulation.rs"),
     include_str!("result.rs"),
 ];
 
@@ -54,7 +55,7 @@ fn every_law_is_in_the_guide() {
             let mut cells = line.strip_prefix("| ")?.split(" | ");
             Some((cells.next()?, cells.next()?))
         })
-        .filter(|row| !["about", "---", "a mesh"].contains(&row.0))
+        .filter(|row| !["about", "---", "a mesh", "WaistProducer"].contains(&row.0))
         .collect();
     let mut stated: Vec<(&str, &str)> = super::all().iter().map(|l| (l.subject, l.name)).collect();
     listed.sort_unstable();

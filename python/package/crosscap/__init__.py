@@ -8,20 +8,8 @@
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING
 
 from ._crosscap import __version__
-
-if TYPE_CHECKING:
-    from . import laws
-    from ._compare import ComparedRun, compare
-    from ._dimension import LocalDimension, dimension
-    from ._mesh import Embedding, Findings, Homology, Mesh, check, homology, isomap
-    from ._mesh import read_mesh, write_mesh
-    from ._plugins import Decomposition
-    from ._reconstruction import Piece, SurfaceReconstruction
-    from ._refusal import Place, Reason, Refusal, RefusalWarning
-    from ._sample import Sample, read_points, sample, surfaces
 
 # Where the names are. They are imported when they are asked for: the command line needs none of them, and
 # scikit-learn takes a second.

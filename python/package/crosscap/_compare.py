@@ -36,13 +36,13 @@ class ComparedRun:
     metric: str
     eps: float
     state: str
-    betti: list = None
-    betti_mod_2: list = None
-    vertices: int = None
-    triangles: int = None
-    distortion: dict = field(default=None, repr=False)
-    reason: str = None
-    seconds: float = field(default=None, repr=False)
+    betti: list | None = None
+    betti_mod_2: list | None = None
+    vertices: int | None = None
+    triangles: int | None = None
+    distortion: dict | None = field(default=None, repr=False)
+    reason: str | None = None
+    seconds: float | None = field(default=None, repr=False)
 
     @property
     def works(self):

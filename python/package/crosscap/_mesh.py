@@ -75,7 +75,7 @@ class Findings:
     report: dict = field(repr=False)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class Mesh:
     """A triangulated surface that may cross itself.
 
@@ -108,34 +108,42 @@ class Mesh:
 
     vertices: np.ndarray
     triangles: np.ndarray
-    curve_edges: np.ndarray = None
-    curve_cells: np.ndarray = None
-    point_index: np.ndarray = None
-    triangle_piece: np.ndarray = None
-    metadata: dict = None
+    curve_edges: np.ndarray
+    curve_cells: np.ndarray
+    point_index: np.ndarray
+    triangle_piece: np.ndarray | None
+    metadata: dict | None
 
-    def __post_init__(self):
-        def keep(name, kind, shape):
-            value = getattr(self, name)
-            if value is not None:
-                value = np.ascontiguousarray(value, dtype=kind)
-                value = value.reshape(shape) if value.size == 0 else value
-                if value.ndim != len(shape):
-                    raise ValueError(f"{name}: found {value.ndim} dimensions, expected {len(shape)}")
-                object.__setattr__(self, name, value)
+    def __init__(
+        self,
+        vertices,
+        triangles,
+        curve_edges=None,
+        curve_cells=None,
+        point_index=None,
+        triangle_piece=None,
+        metadata=None,
+    ):
+        def keep(name, value, kind, shape):
+            value = np.ascontiguousarray(value, dtype=kind)
+            value = value.reshape(shape) if value.size == 0 else value
+            if value.ndim != len(shape):
+                raise ValueError(f"{name}: found {value.ndim} dimensions, expected {len(shape)}")
+            object.__setattr__(self, name, value)
 
-        keep("vertices", np.float64, (0, np.shape(self.vertices)[-1]))
-        keep("triangles", np.int64, (0, 3))
-        keep("curve_edges", np.int64, (0, 2))
-        keep("curve_cells", np.int64, (0,))
-        if self.curve_edges is None or self.curve_cells is None:
-            edges, cells = _crosscap.curves(self.triangles)
-            object.__setattr__(self, "curve_edges", edges)
-            object.__setattr__(self, "curve_cells", cells)
-        if self.point_index is None:
-            object.__setattr__(self, "point_index", np.full(len(self.vertices), -1))
-        keep("point_index", np.int64, (0,))
-        keep("triangle_piece", np.int64, (0,))
+        keep("vertices", vertices, np.float64, (0, np.shape(vertices)[-1]))
+        keep("triangles", triangles, np.int64, (0, 3))
+        if curve_edges is None or curve_cells is None:
+            curve_edges, curve_cells = _crosscap.curves(self.triangles)
+        keep("curve_edges", curve_edges, np.int64, (0, 2))
+        keep("curve_cells", curve_cells, np.int64, (0,))
+        if point_index is None:
+            point_index = np.full(len(self.vertices), -1)
+        keep("point_index", point_index, np.int64, (0,))
+        object.__setattr__(self, "triangle_piece", None)
+        if triangle_piece is not None:
+            keep("triangle_piece", triangle_piece, np.int64, (0,))
+        object.__setattr__(self, "metadata", metadata)
 
     def __repr__(self):
         count, dimension = self.vertices.shape
@@ -157,7 +165,7 @@ class Mesh:
             return isomap(self).places
         return np.pad(self.vertices, ((0, 0), (0, 3 - dimension)))
 
-    def page(self, title="mesh", verdict=None):
+    def page(self, title="mesh", verdict=None, points=None):
         """The page on which the mesh is turned: one HTML file.
 
         Parameters
@@ -166,6 +174,8 @@ class Mesh:
             Heading.
         verdict : str, optional
             What the page says about the mesh.
+        points : array-like of shape (n_points, n_dimensions), optional
+            The points that it was made from, to be shown with it and colored by their distance to it.
 
         Returns
         -------
@@ -174,7 +184,9 @@ class Mesh:
         if verdict is None:
             verified = (self.metadata or {}).get("verified")
             verdict = {True: "verified", False: "not verified"}.get(verified, "not checked")
-        return _crosscap.page(self._arrays(), title, verdict)
+        if points is not None:
+            points = np.ascontiguousarray(points, dtype=np.float64)
+        return _crosscap.page(self._arrays(), title, verdict, points)
 
     def _repr_html_(self):
         return _bridges.framed(self.page()) if len(self.triangles) else None
@@ -207,6 +219,13 @@ def homology(mesh):
     Returns
     -------
     Homology
+
+    Examples
+    --------
+    >>> import crosscap
+    >>> square = crosscap.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> crosscap.homology(square)
+    Homology(betti=(1, 0, 0), betti_mod2=(1, 0, 0), torsion=(), euler=1)
     """
     return _homology(json.loads(_crosscap.homology(mesh._arrays())))
 
@@ -264,6 +283,13 @@ def isomap(mesh, dimension=3, *, landmarks=300):
     Returns
     -------
     Embedding
+
+    Examples
+    --------
+    >>> import crosscap
+    >>> square = crosscap.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> crosscap.isomap(square, 2).places.shape
+    (4, 2)
     """
     return Embedding(**_crosscap.isomap(mesh._arrays(), dimension, landmarks))
 
@@ -274,11 +300,24 @@ def read_mesh(path):
     Parameters
     ----------
     path : str or path-like
-        The file: ``.npz`` keeps everything; ``.vtu``, ``.ply``, ``.obj``, ``.off``.
+        The file: ``.npz`` keeps everything; ``.vtu``, ``.ply``, ``.obj``, ``.off``, ``.stl``.
 
     Returns
     -------
     Mesh
+
+    Raises
+    ------
+    ValueError
+        With the file, the place, what was found and what was expected.
+
+    Examples
+    --------
+    >>> import crosscap, tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "triangle.off")
+    >>> _ = path.write_text("OFF\\n3 1 0\\n0 0 0\\n1 0 0\\n0 1 0\\n3 0 1 2\\n")
+    >>> crosscap.read_mesh(path)
+    <mesh: 3 vertices in R^3, 1 triangles>
     """
     told = _crosscap.read_mesh(fspath(path))
     told["metadata"] = json.loads(told["metadata"])
@@ -291,9 +330,17 @@ def write_mesh(path, mesh):
     Parameters
     ----------
     path : str or path-like
-        The file: ``.npz`` keeps everything; ``.vtu``, ``.ply``, ``.obj``, ``.off``.
+        The file: ``.npz`` keeps everything; ``.vtu``, ``.ply``, ``.obj``, ``.off``, ``.stl``, ``.glb``.
     mesh : Mesh
         The mesh.
+
+    Examples
+    --------
+    >>> import crosscap, tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "triangle.ply")
+    >>> crosscap.write_mesh(path, crosscap.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+    >>> len(crosscap.read_mesh(path).triangles)
+    1
     """
     pieces = mesh.triangle_piece
     _crosscap.write_mesh(

@@ -18,7 +18,7 @@ class Place(NamedTuple):
     """
 
     kind: str
-    index: object
+    index: object  # type: ignore[assignment]
 
 
 @dataclass(frozen=True)

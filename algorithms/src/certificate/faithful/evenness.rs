@@ -7,6 +7,8 @@ use std::f64::consts::LN_2;
 const LEAST_EVEN: f64 = 1.5;
 /// Standard errors by which a sample must differ from a random one to be treated otherwise.
 const SURE: f64 = 3.0;
+/// The neighbor whose distance the nearest one's is compared with: as far as a density is the same, and far enough to be steady.
+pub(super) const NEIGHBOR: usize = 8;
 
 /// The tail of the distances from places of the surface to the points.
 ///
@@ -27,7 +29,10 @@ impl Evenness {
 
     /// Fitted to the median and the 90 percent quantile of `measures`, the expected numbers of points in the
     /// empty discs about places picked evenly. `points` is how many points there are.
-    pub fn of(mut measures: Vec<f64>, points: usize) -> Self {
+    ///
+    /// Large empty regions make a sample look less even than a random one, and would hide themselves. So it is held for
+    /// that only where the points are `clustered` too.
+    pub fn of(mut measures: Vec<f64>, points: usize, clustered: bool) -> Self {
         if measures.len() < 50 || points < 50 {
             return Self::RANDOM;
         }
@@ -43,7 +48,7 @@ impl Evenness {
         let ten = 10.0_f64.ln();
         let shift = |found: f64, random: f64, error: f64| {
             let off = (found / random).ln();
-            if off.abs() < SURE * error {
+            if off.abs() < SURE * error || off > 0.0 && !clustered {
                 0.0
             } else {
                 off - off.signum() * error
@@ -56,6 +61,19 @@ impl Evenness {
             scale: half / LN_2.powf(1.0 / power),
             power,
         }
+    }
+
+    /// Whether points are nearer to each other than in a random sample, from the squared distances of some to their nearest point as a
+    /// share of those to their neighbor number [`NEIGHBOR`]. In a random sample a share is below x with probability
+    /// 1 - (1 - x)^(k - 1).
+    pub fn is_clustered(mut shares: Vec<f64>) -> bool {
+        if shares.is_empty() {
+            return false;
+        }
+        shares.sort_unstable_by(f64::total_cmp);
+        let half = shares[(shares.len() - 1) / 2];
+        let random = 1.0 - 0.5_f64.powf(1.0 / (NEIGHBOR as f64 - 1.0));
+        half < random * (-SURE * 1.44 / (shares.len() as f64).sqrt()).exp()
     }
 
     /// Whether the sample is more even than a random one.
@@ -95,6 +113,17 @@ mod tests {
         all
     }
 
+    /// What it is asked whether points are clustered.
+    fn shares(points: &[[f64; 2]]) -> Vec<f64> {
+        let share = |p: &[f64; 2]| {
+            let square = |q: &[f64; 2]| (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2);
+            let mut all: Vec<f64> = points.iter().map(square).filter(|&d| d > 0.0).collect();
+            all.sort_unstable_by(f64::total_cmp);
+            all[0] / all[NEIGHBOR - 1]
+        };
+        points.iter().map(share).collect()
+    }
+
     #[test]
     fn a_random_sample_is_one_and_a_grid_is_not() {
         use rand::{RngExt, SeedableRng};
@@ -102,11 +131,17 @@ mod tests {
         let scattered: Vec<[f64; 2]> = (0..900)
             .map(|_| std::array::from_fn(|_| random.random_range(0.0..1.0)))
             .collect();
-        let even = Evenness::of(measures(&scattered), 900);
+        let even = Evenness::of(measures(&scattered), 900, true);
         assert!((even.radius(1.3) - 1.3).abs() < 0.1, "{even:?}");
+        assert!(!Evenness::is_clustered(shares(&scattered)));
+        let twins: Vec<[f64; 2]> = scattered
+            .iter()
+            .flat_map(|p| [*p, p.map(|x| x + 0.002)])
+            .collect();
+        assert!(Evenness::is_clustered(shares(&twins)));
         let mut shaken = |i: usize| (i as f64 + random.random_range(0.0..0.4)) / 30.0;
         let grid: Vec<[f64; 2]> = (0..900).map(|k| [shaken(k / 30), shaken(k % 30)]).collect();
-        let even = Evenness::of(measures(&grid), 900);
+        let even = Evenness::of(measures(&grid), 900, false);
         assert!(even.radius(1.3) < 1.0, "{even:?}");
         assert!(even.random(6.0) > 12.0, "{even:?}");
     }

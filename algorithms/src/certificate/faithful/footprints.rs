@@ -1,5 +1,6 @@
 //! Where on the mesh the input points stand: the nearest place of the mesh to each.
 
+use crate::certificate::distance::{Products, point_triangle};
 use crate::certificate::frame::Frame;
 use crate::certificate::geometry::corners;
 use crate::certificate::incidence::Incidence;
@@ -56,7 +57,7 @@ impl Footprints {
             let row = points.point(p);
             let found = tree.nearest(&frame.spot(row), frame.slack, f64::INFINITY, |item| {
                 let [a, b, c] = shape(item as usize);
-                crate::certificate::distance::point_triangle(row, a, b, c)
+                point_triangle(row, a, b, c)
             });
             all.rows.push(p as u32);
             let Some((item, square)) = found else {
@@ -111,24 +112,13 @@ fn open_sides(mesh: &Mesh, incidence: &Incidence) -> Vec<u8> {
 /// Weights of the corners at the place of a triangle that is nearest to a point; the triangle may
 /// be an edge whose end is named twice.
 fn nearest_weights(point: &[f64], [a, b, c]: [&[f64]; 3]) -> [f64; 3] {
-    let (mut uu, mut uv, mut vv, mut wu, mut wv) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for k in 0..point.len() {
-        let (u, v, w) = (b[k] - a[k], c[k] - a[k], point[k] - a[k]);
-        uu += u * u;
-        uv += u * v;
-        vv += v * v;
-        wu += w * u;
-        wv += w * v;
+    let products = Products::of(point, a, [a, b, c]);
+    if let Some([s, t]) = products.inside() {
+        return [1.0 - (s + t), s, t];
     }
-    let determinant = uu * vv - uv * uv;
-    let (s, t) = (vv * wu - uv * wv, uu * wv - uv * wu);
-    if determinant > 1e-14 * uu * vv && s >= 0.0 && t >= 0.0 && s + t <= determinant {
-        return [
-            1.0 - (s + t) / determinant,
-            s / determinant,
-            t / determinant,
-        ];
-    }
+    let Products {
+        uu, uv, vv, wu, wv, ..
+    } = products;
     let share = |along: f64, length: f64| {
         if length > 0.0 {
             (along / length).clamp(0.0, 1.0)
@@ -172,7 +162,7 @@ mod tests {
             prop_assert!(w.iter().all(|&w| (0.0..=1.0).contains(&w)));
             prop_assert!((w.iter().sum::<f64>() - 1.0).abs() < 1e-12);
             let at: Vec<f64> = (0..4).map(|k| w[0] * t[0][k] + w[1] * t[1][k] + w[2] * t[2][k]).collect();
-            let square = crate::certificate::distance::point_triangle(p, t[0], t[1], t[2]);
+            let square = point_triangle(p, t[0], t[1], t[2]);
             prop_assert!((squared_distance(&at, p) - square).abs() < 1e-12);
         }
     }

@@ -4,12 +4,18 @@
 //! chooses; what is smaller than it they cannot see. Here the unit is the spacing of the points
 //! where they are: s = 1 / sqrt(density).
 
+mod arcs;
+mod around;
+mod chains;
 mod chance;
+mod discs;
 mod evenness;
 pub(super) mod footprints;
 mod gaps;
 pub(super) mod ground;
 mod patch;
+mod rim;
+mod search;
 mod sheets;
 mod tiles;
 mod wings;
@@ -17,8 +23,9 @@ mod wings;
 #[cfg(test)]
 mod tests;
 
-pub use gaps::Gap;
-pub(super) use gaps::Search;
+pub use arcs::Stretch;
+pub use discs::Gap;
+pub(super) use search::Search;
 pub use sheets::{Merged, Offset};
 
 use super::quality::quantile;
@@ -30,6 +37,7 @@ use std::fmt;
 
 /// What the points say about the mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct FaithfulReport {
     /// Points that were looked at.
     pub points: usize,
@@ -41,18 +49,33 @@ pub struct FaithfulReport {
     pub significance: f64,
     /// The least likely empty region that the mesh covers.
     pub largest_gap: Option<Gap>,
+    /// The least likely stretch of a curve without points.
+    pub largest_stretch: Option<Stretch>,
     /// The least likely gap in the heights of points over one sheet of the mesh, where there is any.
     pub merged: Option<Merged>,
     /// The vertex that is worst off the points around it.
     pub offset: Option<Offset>,
     /// Median scatter of the points about quadratic patches, in local spacings.
     pub scatter: f64,
+    /// Landmark separation below which all that is bridged, joined or merged would stay apart, unit of the data; none where
+    /// nothing is.
+    pub separation_needed: Option<f64>,
     /// What is wrong.
     pub violations: Vec<Violation>,
 }
 
+impl FaithfulReport {
+    /// Something would stay apart below this landmark separation only.
+    fn needs(&mut self, separation: f64) {
+        let before = self.separation_needed.unwrap_or(f64::INFINITY);
+        self.separation_needed = Some(separation.min(before));
+    }
+}
+
 /// Width in landmark separations of a gap that a mesh leaves open: its boundary then has six edges and more.
 const RESOLVED: f64 = 2.5;
+/// Length in landmark separations of a stretch without points that a curve does not bridge.
+const ENDED: f64 = 2.0;
 
 pub(super) fn check(
     search: &Search<'_>,
@@ -70,6 +93,9 @@ pub(super) fn check(
     let gaps = search.run(significance);
     report.largest_gap = gaps.first().cloned();
     let bridged: Vec<&Gap> = gaps.iter().filter(|g| g.p < significance).collect();
+    for gap in &bridged {
+        report.needs(gap.size / RESOLVED);
+    }
     if let Some(worst) = bridged.first() {
         let mut triangles: Vec<u32> = bridged.iter().map(|g| g.triangle).collect();
         triangles.sort_unstable();
@@ -87,11 +113,45 @@ pub(super) fn check(
             .violations
             .extend(violation.map(|v| v.measured(worst.p, significance).detailed(detail)));
     }
+    let stretches = arcs::stretches(search.mesh, search.incidence, search.feet);
+    stretches_told(stretches, &mut report);
     if let Some(points) = options.points {
         let found = sheets::look(search, points, significance, options.limits.vertex_offset);
         sheets_told(search.mesh, found, &mut report);
     }
     report
+}
+
+/// Stretches of curves without points, as a figure and a violation.
+fn stretches_told(stretches: Vec<Stretch>, report: &mut FaithfulReport) {
+    let bare: Vec<&Stretch> = stretches
+        .iter()
+        .filter(|s| s.p < s.limit(report.significance))
+        .collect();
+    for stretch in &bare {
+        report.needs(stretch.size / ENDED);
+    }
+    if let Some(worst) = bare.first() {
+        let places = bare.iter().map(|s| Place::Edge(s.edge)).collect();
+        let detail = format!(
+            "the worst is {:.1} times as long as its points are apart ({:.4}){}, p = {:.1e}",
+            worst.length,
+            worst.size,
+            if worst.joint {
+                ", where the curve is joined to something else"
+            } else {
+                ""
+            },
+            worst.p
+        );
+        let violation = Violation::at(ViolationKind::BareStretch, places, |_| worst.place.clone());
+        let told = violation.map(|v| {
+            v.measured(worst.p, worst.limit(report.significance))
+                .detailed(detail)
+        });
+        report.violations.extend(told);
+    }
+    report.largest_stretch = stretches.into_iter().next();
 }
 
 /// What was found about sheets and places, as figures and violations.
@@ -100,6 +160,9 @@ fn sheets_told(mesh: &Mesh, found: sheets::Found, report: &mut FaithfulReport) {
     let significance = report.significance;
     report.scatter = found.scatter;
     let merged: Vec<&Merged> = found.merged.iter().filter(|m| m.p < significance).collect();
+    for sheets in &merged {
+        report.needs(sheets.distance);
+    }
     if let Some(worst) = merged.first() {
         let places = merged.iter().map(|m| Place::Vertex(m.vertex)).collect();
         let detail = format!(
@@ -155,6 +218,13 @@ impl fmt::Display for FaithfulReport {
             ),
             None => f.write_str("; no gap bridged"),
         }?;
+        if let Some(stretch) = &self.largest_stretch {
+            write!(
+                f,
+                "; longest bare stretch of a curve: {:.1} spacings ({:.4}), p = {:.1e}",
+                stretch.length, stretch.size, stretch.p
+            )?;
+        }
         if let Some(off) = &self.offset {
             write!(
                 f,

@@ -1,7 +1,7 @@
 //! Sheets of points that the mesh takes for one, and vertices off their points.
 
-use super::gaps::Search;
 use super::patch::Patch;
+use super::search::Search;
 use super::wings::Wings;
 use crosscap_core::PointCloud;
 use serde::Serialize;
@@ -21,6 +21,7 @@ const CLEAR: f64 = 2.5;
 
 /// Two sheets of points that are one in the mesh.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Merged {
     /// Distance between them, in local spacings.
     pub apart: f64,
@@ -34,6 +35,7 @@ pub struct Merged {
 
 /// A vertex that is off the points around it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Offset {
     /// Distance of the vertex to a quadratic patch through the points of a sheet at it, in local spacings.
     pub away: f64,

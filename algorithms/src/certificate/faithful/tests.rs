@@ -124,6 +124,21 @@ fn a_bent_slit() {
     });
 }
 
+/// A mesh that leaves a slit open but closes its end by an edge across it: no disc is empty between that edge and the
+/// points, yet the edge itself is far from all of them.
+#[test]
+fn an_edge_across_the_end_of_a_slit() {
+    let empty = |x: f64, y: f64| x.abs() < 0.2 && y.abs() < 0.4;
+    let points = sample(5, POINTS, |x, y| if empty(x, y) { 0.0 } else { 1.0 });
+    let right = judged(&plate(empty), &points);
+    assert!(right.verdict().is_verified(), "{right}");
+    let wrong = judged(&plate(|x, y| empty(x, y) && y < 0.2), &points);
+    let kinds: Vec<ViolationKind> = wrong.violations().map(|v| v.kind).collect();
+    assert!(kinds.contains(&ViolationKind::BridgedGap), "{wrong}");
+    let gap = wrong.faithful.unwrap().largest_gap.unwrap();
+    assert!((gap.place[1] - 0.2).abs() < 0.01, "{gap:?}");
+}
+
 /// Random, dense in one corner and thin in the other, even: nothing is found. The guide says how often a
 /// finding is a false alarm; these are a watch on it.
 #[test]
@@ -213,4 +228,76 @@ fn a_vertex_off_its_points() {
             .verdict()
             .is_verified()
     );
+}
+
+fn is_bare(certificate: &Certificate) -> bool {
+    certificate
+        .violations()
+        .any(|v| v.kind == ViolationKind::BareStretch)
+}
+
+/// The plate with a curve on its middle, and a sample of both: two points of the curve to a spacing, from `away` above the plate on.
+fn plate_with_curve(away: f64, seed: u64) -> (Mesh, PointCloud<f64>) {
+    let plate = plate(|_, _| false);
+    let middle = (0..plate.vertices.len())
+        .find(|&v| plate.vertices.point(v)[..2].iter().all(|x| x.abs() < 0.01))
+        .unwrap() as u32;
+    let (first, steps) = (plate.vertices.len() as u32, 6);
+    let mut places = plate.vertices.coordinates().to_vec();
+    places.extend((1..=steps).flat_map(|k| [0.0, 0.0, f64::from(k) / f64::from(steps)]));
+    let mut curves = plate.complex.curve_edges.clone();
+    let ends = (0..steps).map(|k| [if k == 0 { middle } else { first + k - 1 }, first + k]);
+    curves.extend(ends.map(|[a, b]| CurveEdge::new(a, b, 0)));
+    let vertices = first as usize + steps as usize;
+    let complex = Complex::new(vertices, plate.complex.triangles, curves).unwrap();
+    let mesh = Mesh::new(
+        complex,
+        PointCloud::new(3, places).unwrap(),
+        vec![-1; vertices],
+    )
+    .unwrap();
+    let mut rows = sample(seed, POINTS, |_, _| 1.0).coordinates().to_vec();
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let count = (2.0 * (1.0 - away) / SPACING) as usize;
+    rows.extend((0..count).flat_map(|_| [0.0, 0.0, random.random_range(away..1.0)]));
+    (mesh, PointCloud::new(3, rows).unwrap())
+}
+
+/// A curve that ends five spacings above the plate is not joined to it, one that ends in it is.
+#[test]
+fn a_curve_that_ends_above_a_sheet() {
+    for seed in 20..26 {
+        let (mesh, points) = plate_with_curve(5.0 * SPACING, seed);
+        let wrong = judged(&mesh, &points);
+        assert!(is_bare(&wrong), "{seed}: {wrong}");
+        let found = wrong.faithful.unwrap().largest_stretch.unwrap();
+        assert!(found.joint && found.size > 4.9 * SPACING, "{found:?}");
+        let (mesh, points) = plate_with_curve(0.0, seed);
+        let right = judged(&mesh, &points);
+        assert!(right.verdict().is_verified(), "{seed}: {right}");
+    }
+}
+
+/// A curve in two pieces is found as well.
+#[test]
+fn a_curve_in_two() {
+    let (mesh, points) = plate_with_curve(0.0, 30);
+    let kept = |p: &[f64]| p[2] == 0.0 || (p[2] - 0.5).abs() > 0.2;
+    let rows: Vec<f64> = points
+        .iter()
+        .filter(|p| kept(p))
+        .flatten()
+        .copied()
+        .collect();
+    let wrong = judged(&mesh, &PointCloud::new(3, rows).unwrap());
+    let found = wrong
+        .faithful
+        .as_ref()
+        .unwrap()
+        .largest_stretch
+        .clone()
+        .unwrap();
+    assert!(!found.joint, "{wrong}");
+    assert!(is_bare(&wrong), "{wrong}");
+    assert!((found.place[2] - 0.5).abs() < 0.1, "{found:?}");
 }

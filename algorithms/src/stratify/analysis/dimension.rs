@@ -1,84 +1,37 @@
-//! Local dimensions, and where they come from.
+//! Local dimensions, as an estimator tells them.
 
-use super::fitter::{Fitter, Scratch, View};
+use super::fitter::{Fitter, View};
 use crate::audit;
-use crate::moments::LocalDimension;
 use crate::principal::PrincipalFrame;
-use crosscap_core::{DimensionEstimator, Error, Neighbor, Neighborhood, Scalar};
-
-/// Where local dimensions come from: an estimator, which may have answered for the balls of the analysis
-/// beforehand.
-#[derive(Clone, Copy)]
-pub struct Dimensions<'a, S: Scalar> {
-    estimator: &'a dyn DimensionEstimator<Scalar = S>,
-    known: Option<&'a [LocalDimension]>,
-}
-
-impl<'a, S: Scalar> Dimensions<'a, S> {
-    /// From an estimator, asked neighborhood by neighborhood.
-    pub fn by(estimator: &'a dyn DimensionEstimator<Scalar = S>) -> Self {
-        Self {
-            estimator,
-            known: None,
-        }
-    }
-
-    /// What the estimator says of the balls of the analysis, one a point, computed for all of them
-    /// together. Smaller balls are still asked of the estimator.
-    pub fn with_known(self, known: &'a [LocalDimension]) -> Self {
-        Self {
-            known: Some(known),
-            ..self
-        }
-    }
-
-    /// The estimator.
-    pub fn estimator(&self) -> &'a dyn DimensionEstimator<Scalar = S> {
-        self.estimator
-    }
-}
+use crosscap_core::{BallDimension, Balls, Error, Neighbor, Neighborhood, Radii, Scalar};
 
 impl<S: Scalar> Fitter<'_, S> {
-    /// Number of points in the neighborhood of `i` and its dimension.
-    pub(in crate::stratify) fn dimension_at(
+    /// Number of points and dimension of the balls of the analysis, one a point, as the estimator tells them for all
+    /// of them together.
+    pub(in crate::stratify) fn dimensions(
         &self,
-        i: usize,
-        eps: f64,
-        scratch: &mut Scratch<S>,
-    ) -> Result<(usize, u8), Error> {
-        let least = self.tuning.analysis.least_neighbors;
-        let enough = |found: usize| {
-            if found >= least {
-                return Ok(found);
-            }
-            Err(Error::SparseNeighborhood {
-                point: i,
-                found,
-                needed: least,
-                parameter: "eps",
-            })
+        radii: Radii<'_>,
+    ) -> Result<Vec<BallDimension>, Error> {
+        let balls = Balls {
+            metric: self.space.metric(),
+            oracle: self.space.oracle(),
+            cloud: Some(self.cloud),
+            radii,
+            least: self.tuning.analysis.least_neighbors,
         };
-        let (neighbors, dimension) = match self.dimensions.known {
-            Some(known) => {
-                let known = known.get(i).ok_or_else(|| Error::Shape {
-                    found: format!("{} known dimensions", known.len()),
-                    expected: format!("{}, one a point", self.cloud.len()),
-                })?;
-                (enough(known.count as usize)?, known.dimension as usize)
-            }
-            None => {
-                let near = &mut scratch.near;
-                self.space.oracle().within(i, S::of(eps), near);
-                let found = enough(near.len())?;
-                (found, self.estimate(i, eps, near)?)
-            }
-        };
-        Ok((neighbors, dimension.min(255) as u8))
+        let mut found = self.estimator.estimate_all(&balls, self.execute)?;
+        audit::dimensions(self.estimator, &balls, &found)?;
+        // A value above the dimension of the space is an error of chance.
+        let most = self.cloud.dimension().min(u8::MAX.into()) as u32;
+        for ball in &mut found {
+            ball.dimension = ball.dimension.min(most);
+        }
+        Ok(found)
     }
 
     /// What the estimator says of the points `near` around `i`.
     fn estimate(&self, i: usize, radius: f64, near: &[Neighbor<S>]) -> Result<usize, Error> {
-        let estimator = self.dimensions.estimator;
+        let estimator = self.estimator;
         let estimate = estimator.estimate(&Neighborhood {
             center: i,
             radius,
@@ -116,7 +69,7 @@ impl<S: Scalar> Fitter<'_, S> {
         frame: &PrincipalFrame,
         points: usize,
     ) -> Option<usize> {
-        let estimator = self.dimensions.estimator;
+        let estimator = self.estimator;
         if let Some(estimate) = estimator.of_variances(&frame.variances) {
             return Some(estimate.dimension);
         }

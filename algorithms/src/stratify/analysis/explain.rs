@@ -203,7 +203,7 @@ impl<S: Scalar> Fitter<'_, S> {
     }
 
     /// The place of a row that a fit moves from one place to another, both in the coordinates of the model.
-    fn moved(&self, row: usize, view: &View, from: &[f64], to: &[f64]) -> Box<[f64]> {
+    pub(super) fn moved(&self, row: usize, view: &View, from: &[f64], to: &[f64]) -> Box<[f64]> {
         let shift: Vec<f64> = to.iter().zip(from).map(|(a, b)| a - b).collect();
         (view.frame.lift_vector(&shift).iter())
             .zip(self.cloud.point(row))

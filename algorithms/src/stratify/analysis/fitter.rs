@@ -1,20 +1,22 @@
 //! Balls of the space with the coordinates that models are fitted in.
 
+use super::Analyzer;
 use super::ledger::{Ledger, ModelCounts};
-use super::{Analyzer, Dimensions};
 use crate::audit::Faults;
 use crate::execute::Execute;
 use crate::principal::PrincipalFrame;
 use crate::space::Space;
-use crate::stratify::tuning::Tuning;
-use crosscap_core::{LocalPoints, Neighbor, PointCloud, Scalar, SingularityModel};
+use crate::tuning::Tuning;
+use crosscap_core::{
+    DimensionEstimator, LocalPoints, Neighbor, PointCloud, Scalar, SingularityModel,
+};
 use std::ops::Range;
 
 /// An [`Analyzer`] on a space that has coordinates. Everything that fits a model goes through it.
 pub(in crate::stratify) struct Fitter<'a, S: Scalar> {
     pub(in crate::stratify) space: Space<'a, S>,
     pub(in crate::stratify) cloud: &'a PointCloud<S>,
-    pub(super) dimensions: Dimensions<'a, S>,
+    pub(super) estimator: &'a dyn DimensionEstimator<Scalar = S>,
     pub(in crate::stratify) models: &'a [Box<dyn SingularityModel>],
     pub(in crate::stratify) execute: &'a dyn Execute,
     pub(in crate::stratify) tuning: &'a Tuning,
@@ -79,7 +81,7 @@ impl<'a, S: Scalar> Fitter<'a, S> {
         Self {
             space: analyzer.space,
             cloud,
-            dimensions: analyzer.dimensions,
+            estimator: analyzer.estimator,
             models: analyzer.models,
             execute: analyzer.execute,
             tuning: analyzer.tuning,

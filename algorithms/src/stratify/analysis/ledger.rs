@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What became of one model in the competition for neighborhoods.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct ModelCounts {
     /// The model's own name.
     pub name: String,

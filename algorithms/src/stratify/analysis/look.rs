@@ -5,35 +5,29 @@ use super::explain::{Kind, Verdict};
 use super::fitter::{Fitter, Scratch, View};
 use super::groups::Asked;
 use super::{Analysis, AnalysisOptions, StratumKind};
-use crosscap_core::{Error, Scalar};
+use crosscap_core::Scalar;
 
 impl<S: Scalar> Fitter<'_, S> {
-    /// Number of points in a neighborhood, its dimension, and what the point is unless it is
-    /// regular, or fits in competition with one sheet must tell.
+    /// What a point with a neighborhood of this dimension is, unless it is regular, or fits in competition with
+    /// one sheet must tell.
     pub(super) fn first_look(
         &self,
         i: usize,
+        dimension: usize,
         options: &AnalysisOptions,
         boundary: bool,
         scratch: &mut Scratch<S>,
-    ) -> Result<(usize, u8, Option<Box<Verdict>>), Error> {
-        let (neighbors, dimension) = if options.surface {
-            // Taken on trust: only a boundary is looked for.
-            (0, 2)
-        } else {
-            self.dimension_at(i, options.radius(i), scratch)?
-        };
+    ) -> Option<Box<Verdict>> {
         let asked = self
             .models
             .iter()
-            .any(|m| m.applies_to(dimension.into()) && !(boundary && m.finds_boundary()));
+            .any(|m| m.applies_to(dimension) && !(boundary && m.finds_boundary()));
         let verdict = match dimension {
-            2 if asked => Some(self.second_thought(i, options, boundary, scratch)),
-            2 => None,
-            _ if asked => None,
-            _ => Some(Verdict::UNEXPLAINED),
+            2 if asked => self.second_thought(i, options, boundary, scratch),
+            _ if asked || dimension == 2 => return None,
+            _ => Verdict::UNEXPLAINED,
         };
-        Ok((neighbors, dimension, verdict.map(Box::new)))
+        Some(Box::new(verdict))
     }
 
     /// What models say that ask for 2-dimensional neighborhoods.

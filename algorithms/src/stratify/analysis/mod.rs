@@ -1,5 +1,6 @@
 //! Which stratum every point of the cloud is in.
 
+mod about_end;
 mod competition;
 mod dimension;
 mod explain;
@@ -9,16 +10,15 @@ mod ledger;
 mod look;
 mod refit;
 
-pub use dimension::Dimensions;
 pub(super) use fitter::{Fitter, Scratch};
 pub use ledger::ModelCounts;
 
 use super::site::{On, Site, StratumKind, Witness};
-use super::tuning::Tuning;
 use crate::audit;
 use crate::execute::{self, Execute};
 use crate::space::Space;
-use crosscap_core::{Error, Scalar, SingularityModel};
+use crate::tuning::Tuning;
+use crosscap_core::{BallDimension, DimensionEstimator, Error, Radii, Scalar, SingularityModel};
 use explain::{Kind, Verdict};
 use groups::Asked;
 
@@ -40,6 +40,14 @@ impl AnalysisOptions {
     /// Radius of the neighborhood of a row.
     fn radius(&self, row: usize) -> f64 {
         self.radii.as_ref().map_or(self.eps, |radii| radii[row])
+    }
+
+    /// Radii of all neighborhoods.
+    fn all_radii(&self) -> Radii<'_> {
+        match &self.radii {
+            Some(radii) => Radii::Each(radii),
+            None => Radii::Same(self.eps),
+        }
     }
 
     fn check(&self, points: usize) -> Result<(), Error> {
@@ -80,8 +88,8 @@ pub(super) fn marked(rows: &[usize], points: usize) -> Result<Vec<bool>, Error> 
 pub struct Analyzer<'a, S: Scalar> {
     /// The points. Models are fitted in its coordinates.
     pub space: Space<'a, S>,
-    /// Local dimension.
-    pub dimensions: Dimensions<'a, S>,
+    /// Tells the local dimension.
+    pub estimator: &'a dyn DimensionEstimator<Scalar = S>,
     /// Models that compete for neighborhoods that are not 2-dimensional.
     pub models: &'a [Box<dyn SingularityModel>],
     /// What runs the points.
@@ -105,6 +113,11 @@ pub struct Analysis {
 }
 
 impl Analysis {
+    /// So many points, all inside cells: for a method that looks for no curve.
+    pub fn of_surface(points: usize) -> Self {
+        Self::of_boundary(&vec![false; points])
+    }
+
     /// Nothing but what was given: boundary points where they are, all others inside cells.
     pub(super) fn of_boundary(boundary: &[bool]) -> Self {
         let site = |&given: &bool| match given {
@@ -235,14 +248,26 @@ impl<S: Scalar> Fitter<'_, S> {
         out: &mut Analysis,
     ) -> Result<(), Error> {
         let n = boundary.len();
+        // Where surface is set every ball is 2-dimensional on trust, and only a boundary is looked for.
+        let balls = match options.surface {
+            true => vec![
+                BallDimension {
+                    neighbors: 0,
+                    dimension: 2
+                };
+                n
+            ],
+            false => self.dimensions(options.all_radii())?,
+        };
         let found = execute::map(self.execute, n, Scratch::default, |scratch, i| {
-            self.first_look(i, options, boundary[i], scratch)
-                .map_err(Box::new)
+            let dimension = balls[i].dimension as usize;
+            self.first_look(i, dimension, options, boundary[i], scratch)
         });
         let mut total = 0usize;
         let mut asked: Vec<(u8, Asked)> = Vec::new();
-        for (row, found) in found.into_iter().enumerate() {
-            let (neighbors, dimension, verdict) = found.map_err(|error| *error)?;
+        for (row, verdict) in found.into_iter().enumerate() {
+            let neighbors = balls[row].neighbors as usize;
+            let dimension = balls[row].dimension as u8;
             total += neighbors;
             out.dimensions[row] = dimension;
             match verdict {
@@ -267,16 +292,21 @@ impl<S: Scalar> Fitter<'_, S> {
         out.sort();
         self.faults.none()?;
         out.mean_neighbors = total as f64 / n.max(1) as f64;
-        let limit = self.tuning.analysis.unexplained_share * n as f64;
-        if out.unexplained.len() as f64 > limit {
-            let point = out.unexplained[0];
-            return Err(Error::Dimension {
+        self.few_are_unexplained(out)
+    }
+
+    /// # Errors
+    /// [`Error::Dimension`] where so many points are explained by no model that the radius must be unfit.
+    fn few_are_unexplained(&self, out: &Analysis) -> Result<(), Error> {
+        let limit = self.tuning.analysis.unexplained_share * out.sites.len() as f64;
+        match out.unexplained.first() {
+            Some(&point) if out.unexplained.len() as f64 > limit => Err(Error::Dimension {
                 point,
                 dimension: out.dimensions[point] as usize,
                 count: out.unexplained.len(),
                 parameter: "eps",
-            });
+            }),
+            _ => Ok(()),
         }
-        Ok(())
     }
 }

@@ -6,7 +6,7 @@ use crate::space::Space;
 use crate::stratify::atlas::Reference;
 use crate::stratify::skeleton::Skeleton;
 use crate::stratify::strata::Strata;
-use crate::stratify::tuning::CellTuning;
+use crate::tuning::CellTuning;
 use crosscap_core::{Neighbor, PointCloud, Scalar};
 
 /// A flood, and what of the contacts it reached.

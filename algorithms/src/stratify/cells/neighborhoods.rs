@@ -10,9 +10,10 @@ use crate::execute;
 use crate::space::Space;
 use crate::stratify::analysis::Analyzer;
 use crate::stratify::atlas::Reference;
+use crate::stratify::charts::ChartSpace;
+use crate::stratify::curve_ends::Wards;
 use crate::stratify::skeleton::Skeleton;
 use crate::stratify::strata::Strata;
-use crate::stratify::waist::ChartSpace;
 use crosscap_core::{
     CellNeighborhood, Error, Neighbor, NeighborhoodOracle, PointCloud, Scalar, squared_distance,
 };
@@ -140,7 +141,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
             on_curves.extend_from_slice(places.point(fit.row));
         }
         let gap = tuning.curve_gap * self.dl;
-        let around = Surroundings::new(width, landmarks, &on_curves, gap, self.dl);
+        let around = Surroundings::new(width, landmarks, &on_curves, gap, tuning.flat * self.dl);
         let find = |scratch: &mut plain::Scratch, j: usize| {
             if jobs[j].group.is_some() {
                 return None;
@@ -263,6 +264,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
         landmark_at: &[u32],
     ) -> Result<Vec<Vec<u32>>, Error> {
         let measure = self.measure()?;
+        let wards = Wards::new(self.strata, self.dl);
         let held = match measure {
             Measure::Places(_) => 0,
             Measure::Metric(_) => self.strata.len(),
@@ -290,8 +292,10 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
                         Extent::Metric(ball)
                     }
                 };
-                hits.flood
-                    .run(graph, from, |node| extent.holds_node(graph, node));
+                let ward = wards.of(center, from[0] as usize);
+                hits.flood.run(graph, from, |node| {
+                    wards.admits(ward, graph.row(node)) && extent.holds_node(graph, node)
+                });
                 let inside = |k: usize| extent.holds(self.rows[k]);
                 let found = hits.members(self.contacts, landmark_at, job.landmark, inside);
                 nearest_first(found, |k| extent.rank(self.rows[k as usize]))

@@ -7,9 +7,6 @@ use nalgebra::{SMatrix, SVector};
 
 /// Coefficients of a quadratic height over two directions.
 const TERMS: usize = 6;
-/// One sheet is what a quadratic height follows this closely, as a share of dl: sheets that
-/// are nearer to each other than that share no landmarks' spacing could tell apart.
-const FLAT: f64 = 0.1;
 /// Rounds of subspace iteration for the two directions.
 const ROUNDS: usize = 4;
 
@@ -23,7 +20,8 @@ pub(super) struct Surroundings {
     curves: BallTree,
     /// A curve has one of them at least this close to any of its points.
     curve_gap: f64,
-    dl: f64,
+    /// How closely a sheet follows a quadratic height, unit of the data.
+    flat: f64,
 }
 
 /// Buffers of one thread.
@@ -38,13 +36,13 @@ pub(super) struct Scratch {
 
 impl Surroundings {
     /// `places` of all landmarks and `curves`, places on curves no farther apart than twice
-    /// `curve_gap`, with `width` numbers each.
+    /// `curve_gap`, with `width` numbers each; a sheet follows a quadratic height as closely as `flat`.
     pub(super) fn new(
         width: usize,
         places: Vec<f64>,
         curves: &[f64],
         curve_gap: f64,
-        dl: f64,
+        flat: f64,
     ) -> Self {
         Self {
             landmarks: BallTree::new(width, &places),
@@ -52,7 +50,7 @@ impl Surroundings {
             width,
             places,
             curve_gap,
-            dl,
+            flat,
         }
     }
 
@@ -89,24 +87,26 @@ impl Surroundings {
         if !clear || members.len() + 1 < 2 * TERMS {
             return false;
         }
-        let width = self.width;
-        let Scratch {
+        scratch.offsets.clear();
+        scratch.offsets.resize(self.width, 0.0);
+        for &m in members {
+            let place = self.place(m).iter().zip(origin);
+            scratch.offsets.extend(place.map(|(x, o)| (x - o) / radius));
+        }
+        scratch.is_one_sheet(self.width, self.flat / radius)
+    }
+}
+
+impl Scratch {
+    /// Whether a quadratic height over two directions follows all offsets within `tolerance`, in every coordinate.
+    fn is_one_sheet(&mut self, width: usize, tolerance: f64) -> bool {
+        let Self {
             offsets,
             ends,
             image,
             rows,
             right,
-        } = scratch;
-        offsets.clear();
-        offsets.resize(width, 0.0);
-        for &m in members {
-            offsets.extend(
-                self.place(m)
-                    .iter()
-                    .zip(origin)
-                    .map(|(x, o)| (x - o) / radius),
-            );
-        }
+        } = self;
         if !tangents(width, offsets, ends, image) {
             return false;
         }
@@ -130,7 +130,7 @@ impl Surroundings {
         for r in right.iter_mut() {
             factor.solve_mut(r);
         }
-        let limit = (FLAT * self.dl / radius).powi(2);
+        let limit = tolerance.powi(2);
         offsets
             .chunks_exact(width)
             .zip(rows.iter())
@@ -220,7 +220,7 @@ mod tests {
     }
 
     fn middle_is_plain(places: Vec<f64>, curves: &[f64]) -> bool {
-        let around = Surroundings::new(5, places, curves, 0.7, 1.0);
+        let around = Surroundings::new(5, places, curves, 0.7, 0.1);
         let members = around.near(40, 3.0);
         around.is_plain(40, 3.0, &members, &mut Scratch::default())
     }
@@ -254,7 +254,7 @@ mod tests {
     #[test]
     fn landmarks_on_a_line_are_not_a_sheet() {
         let line = (0..15).flat_map(|k| [f64::from(k) * 0.2, 0.0]).collect();
-        let around = Surroundings::new(2, line, &[], 0.0, 0.2);
+        let around = Surroundings::new(2, line, &[], 0.0, 0.02);
         let members = around.near(7, 9.0);
         assert_eq!(members.len(), 14);
         assert!(!around.is_plain(7, 9.0, &members, &mut Scratch::default()));

@@ -21,10 +21,12 @@ mod waist;
 pub use waist::PublishedCut;
 
 use super::analysis::{Analysis, Analyzer, Fitter, Scratch, marked};
+use super::charts::ChartSpace;
+use super::producer::WaistProducer;
 use super::site::{FitUsed, On, Site, StratumKind};
-use super::waist::ChartSpace;
+use super::stratifier::{Ground, Stratifier};
 use crate::execute;
-use crosscap_core::{Error, LandmarkSelector, LocalChart, Scalar};
+use crosscap_core::{Error, LandmarkSelector, LocalChart, Radii, Scalar};
 
 /// Parameters of the published method, lengths in the unit of the data.
 ///
@@ -41,7 +43,7 @@ use crosscap_core::{Error, LandmarkSelector, LocalChart, Scalar};
 /// use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
 /// use crosscap_algorithms::space::Space;
 /// use crosscap_algorithms::stratify::{
-///     Analyzer, ChartSpace, Dimensions, Published, Tuning, WaistProducer,
+///     Analyzer, ChartSpace, Published, Tuning, WaistProducer,
 /// };
 /// use crosscap_core::PointCloud;
 /// let grid = (0..100).flat_map(|k| [f64::from(k % 10), f64::from(k / 10), 0.0]);
@@ -50,7 +52,7 @@ use crosscap_core::{Error, LandmarkSelector, LocalChart, Scalar};
 /// let oracle = BruteForceOracle::new(&metric);
 /// let estimator = PrincipalComponents::new(0.05)?;
 /// let analyzer = Analyzer {
-///     space: Space::new(&metric, &oracle), dimensions: Dimensions::by(&estimator),
+///     space: Space::new(&metric, &oracle), estimator: &estimator,
 ///     models: &[], execute: &Serial, tuning: &Tuning::MEASURED,
 /// };
 /// let method = Published {
@@ -121,15 +123,18 @@ impl Published {
             return Ok(out);
         }
         let fitter = analyzer.fitter("since planes are fitted in them")?;
+        let balls = fitter.dimensions(Radii::Same(self.eps))?;
         let found = execute::map(analyzer.execute, n, Scratch::default, |scratch, i| {
-            self.point(&fitter, i, scratch)
+            (balls[i].dimension == 3)
+                .then(|| self.singular_part(&fitter, i, scratch))
+                .flatten()
         });
         let mut on_curve = vec![false; n];
         let mut total = 0usize;
-        for (i, found) in found.into_iter().enumerate() {
-            let (dimension, neighbors, curve) = found?;
+        for (i, curve) in found.into_iter().enumerate() {
+            let dimension = balls[i].dimension as u8;
             out.dimensions[i] = dimension;
-            total += neighbors;
+            total += balls[i].neighbors as usize;
             match curve {
                 Some(rows) => rows.iter().for_each(|&r| on_curve[r as usize] = true),
                 None if dimension != 2 => out.unexplained.push(i),
@@ -161,22 +166,16 @@ impl Published {
         }
     }
 
-    /// Dimension of a neighborhood, its number of points, and its B0 where it could be divided.
-    fn point<S: Scalar>(
+    /// The B0 of a neighborhood, where it can be divided.
+    fn singular_part<S: Scalar>(
         &self,
         fitter: &Fitter<'_, S>,
         i: usize,
         scratch: &mut Scratch<S>,
-    ) -> Result<(u8, usize, Option<Vec<u32>>), Error> {
-        let (neighbors, dimension) = fitter.dimension_at(i, self.eps, scratch)?;
-        let curve = (dimension == 3)
-            .then(|| self.divide(fitter, i, self.eps, scratch))
-            .flatten()
-            .map(|parts| {
-                let parts = parts.iter().filter(|p| p.on_curve(self.ep));
-                parts.map(|p| p.row as u32).collect()
-            });
-        Ok((dimension, neighbors, curve))
+    ) -> Option<Vec<u32>> {
+        let parts = self.divide(fitter, i, self.eps, scratch)?;
+        let on_curve = parts.iter().filter(|p| p.on_curve(self.ep));
+        Some(on_curve.map(|p| p.row as u32).collect())
     }
 
     /// The producer of a waist (the paper's section 2.2). `analysis` is that of [`Self::analyze`] with the
@@ -186,7 +185,7 @@ impl Published {
     /// [`Error::Parameter`] for a length that is not positive, [`Error::Shape`] for an analysis of another
     /// number of points.
     pub fn cut<'a, 'p, S: Scalar>(
-        &'p self,
+        &self,
         analyzer: &'p Analyzer<'a, S>,
         analysis: &'p Analysis,
         charts: ChartSpace<'a, S>,
@@ -194,6 +193,52 @@ impl Published {
         chart: &'p dyn LocalChart,
     ) -> Result<PublishedCut<'a, 'p, S>, Error> {
         self.check()?;
-        PublishedCut::new(self, analyzer, analysis, charts, (selector, chart))
+        PublishedCut::new(self.clone(), analyzer, analysis, charts, (selector, chart))
+    }
+}
+
+/// The published method as a [`Stratifier`], with the parameters of the ground. Models are not asked.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PublishedMethod;
+
+impl PublishedMethod {
+    fn of<S: Scalar>(ground: &Ground<'_, S>) -> Published {
+        Published {
+            eps: ground.analysis.eps,
+            tri_eps: ground.options.tri_eps,
+            dp: ground.dp,
+            ep: ground.ep,
+            dl: ground.options.dl,
+            seed: ground.options.seed,
+            surface: ground.analysis.surface,
+            boundary: ground.analysis.boundary.clone(),
+        }
+    }
+}
+
+impl<S: Scalar> Stratifier<S> for PublishedMethod {
+    fn analyze(&self, ground: &Ground<'_, S>) -> Result<Analysis, Error> {
+        Self::of(ground).analyze(&ground.analyzer)
+    }
+
+    fn cut<'p>(
+        &'p self,
+        ground: &'p Ground<'p, S>,
+        analysis: &'p Analysis,
+    ) -> Result<Box<dyn WaistProducer<S> + 'p>, Error> {
+        let Ground {
+            analyzer,
+            charts,
+            selector,
+            chart,
+            ..
+        } = ground;
+        let method = Self::of(ground);
+        let cut = method.cut(analyzer, analysis, *charts, *selector, *chart)?;
+        Ok(Box::new(cut))
+    }
+
+    fn name(&self) -> &str {
+        "paper"
     }
 }

@@ -5,7 +5,7 @@ use crate::execute::Serial;
 use crate::landmarks::RandomGreedy;
 use crate::metric::{BruteForceOracle, Euclidean};
 use crate::space::Space;
-use crate::stratify::{Dimensions, Stratification, Tuning, WaistProducer};
+use crate::stratify::{Stratification, Tuning, WaistProducer};
 use crosscap_core::PointCloud;
 
 fn published() -> Published {
@@ -43,7 +43,7 @@ fn run(
     let estimator = PrincipalComponents::new(0.05)?;
     let analyzer = Analyzer {
         space: Space::new(&metric, &oracle),
-        dimensions: Dimensions::by(&estimator),
+        estimator: &estimator,
         models: &[],
         execute: &Serial,
         tuning: &Tuning::MEASURED,

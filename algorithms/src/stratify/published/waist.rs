@@ -3,10 +3,12 @@
 use super::Published;
 use crate::execute;
 use crate::stratify::analysis::{Analysis, Analyzer, Fitter, Scratch};
+use crate::stratify::charts::ChartSpace;
 use crate::stratify::distances::{lengths, pairs};
+use crate::stratify::producer::WaistProducer;
 use crate::stratify::site::StratumKind;
 use crate::stratify::strata::Strata;
-use crate::stratify::waist::{ChartSpace, Stratification, StratifyCounts, WaistProducer};
+use crate::stratify::stratification::Stratification;
 use crosscap_core::{
     CellNeighborhood, CurveEdge, Error, LandmarkSelector, LocalChart, Scalar, SparseDistances,
     StratifiedLandmarks,
@@ -14,7 +16,7 @@ use crosscap_core::{
 
 /// Makes the waist of a cloud by the published method.
 pub struct PublishedCut<'a, 'p, S: Scalar> {
-    method: &'p Published,
+    method: Published,
     analyzer: &'p Analyzer<'a, S>,
     analysis: &'p Analysis,
     strata: Strata,
@@ -25,7 +27,7 @@ pub struct PublishedCut<'a, 'p, S: Scalar> {
 
 impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
     pub(super) fn new(
-        method: &'p Published,
+        method: Published,
         analyzer: &'p Analyzer<'a, S>,
         analysis: &'p Analysis,
         charts: ChartSpace<'a, S>,
@@ -58,7 +60,7 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
 
     /// Rows of the landmarks, those on curves first, and how many these are.
     fn landmarks(&self) -> Result<(Vec<usize>, usize), Error> {
-        let Published { dl, seed, .. } = *self.method;
+        let Published { dl, seed, .. } = self.method;
         let oracle = self.analyzer.space.oracle();
         let (others, on_curves): (Vec<usize>, Vec<usize>) =
             (0..self.strata.len()).partition(|&i| self.strata.is_regular(i));
@@ -175,14 +177,6 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
 }
 
 impl<S: Scalar> WaistProducer<S> for PublishedCut<'_, '_, S> {
-    fn strata(&self) -> &Strata {
-        &self.strata
-    }
-
-    fn takes_more(&self) -> bool {
-        false
-    }
-
     /// The method knows no other landmarks than those that are drawn: `extra` is left out.
     fn waist(&self, _extra: &[usize]) -> Result<Stratification<S>, Error> {
         let (rows, on_curves) = self.landmarks()?;
@@ -203,25 +197,13 @@ impl<S: Scalar> WaistProducer<S> for PublishedCut<'_, '_, S> {
                 members,
             })
             .collect();
-        let members: usize = neighborhoods.iter().map(|x| x.members.len()).sum();
-        Ok(Stratification {
-            counts: StratifyCounts {
-                landmarks: rows.len(),
-                curve_landmarks: on_curves,
-                corners: 0,
-                curve_edges: curve_edges.len(),
-                cut_edges: 0,
-                mean_members: members as f64 / neighborhoods.len().max(1) as f64,
-            },
-            waist: StratifiedLandmarks {
-                strata,
-                curve_edges,
-                neighborhoods,
-                distances,
-            },
-            points: Vec::new(),
-            rows,
-        })
+        let waist = StratifiedLandmarks {
+            strata,
+            curve_edges,
+            neighborhoods,
+            distances,
+        };
+        Ok(Stratification::new(waist, rows))
     }
 }
 

@@ -99,9 +99,14 @@ impl CurveGraph {
         let rows = &self.nodes.rows;
         let first_corner = rows.len();
         let distance = |a: usize, b: usize| ground.distance(rows[a], rows[b]);
-        // What is next to a bare curve says where it ends, and its points are joined over as much anyway.
+        // A fold ends where the sheet is flat. What is next to a bare curve says where it ends, and its points
+        // are joined over as much anyway.
         let ends: Vec<Vec<usize>> = (self.parts.iter())
-            .filter(|members| members.iter().all(|&k| !self.nodes.is_bare(ground, k)))
+            .filter(|members| {
+                let stops =
+                    |&k: &usize| !self.nodes.is_bare(ground, k) && !self.nodes.is_fold(ground, k);
+                members.iter().all(stops)
+            })
             .map(|members| free_ends(&self.links, members, first_corner, distance))
             .collect();
         let place = |k: usize| ground.places.point(rows[k]);
@@ -132,7 +137,8 @@ fn near_nodes<S: Scalar>(ground: &Ground<'_, '_, S>, nodes: &Nodes) -> Vec<Vec<(
     let mut links: Vec<Vec<(usize, f64)>> = vec![Vec::new(); rows.len()];
     let mut near = Vec::new();
     for (k, &row) in rows.iter().enumerate() {
-        let reach = if nodes.is_bare(ground, k) {
+        // Folds are told apart by their labels.
+        let reach = if nodes.is_bare(ground, k) || nodes.is_fold(ground, k) {
             tuning.bare_reach * dl
         } else {
             tuning.reach * dl

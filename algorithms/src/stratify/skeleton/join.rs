@@ -12,8 +12,9 @@ impl Skeleton {
             degree[end as usize] += 1;
         }
         let cells = &self.cells;
+        // Curves of two cells are folds, which fade out.
         let free: Vec<usize> = (self.corners..self.rows.len())
-            .filter(|&k| degree[k] < 2)
+            .filter(|&k| degree[k] < 2 && cells[k] != 2)
             .collect();
         let reach = ground.tuning.join * ground.dl;
         let mut pairs = Vec::new();

@@ -141,8 +141,9 @@ impl<'p> Part<'p> {
         let (order, _) = sweep(links, &[start], holds);
         let nodes = order.into_iter().map(|x| x.0);
         let rows = &graph.nodes.rows;
-        let bare = members.iter().all(|&k| graph.nodes.is_bare(ground, k));
-        let ends = if bare {
+        let ends_anywhere =
+            |&k: &usize| graph.nodes.is_bare(ground, k) || graph.nodes.is_fold(ground, k);
+        let ends = if members.iter().all(ends_anywhere) {
             let distance = |a: usize, b: usize| ground.distance(rows[a], rows[b]);
             free_ends(links, members, first_corner, distance)
         } else {

@@ -16,8 +16,8 @@ use super::analysis::{Analyzer, Fitter};
 use super::atlas::{Atlas, FitId, Reference};
 use super::site::StratumKind;
 use super::strata::Strata;
-use super::tuning::SkeletonTuning;
-use super::waist::PointStratum;
+use super::stratification::PointStratum;
+use crate::tuning::SkeletonTuning;
 use crosscap_core::{CurveEdge, Error, PointCloud, Scalar, SingularityModel};
 use thin::thin;
 

@@ -81,6 +81,11 @@ impl Nodes {
         self.kind == StratumKind::Curve && ground.strata.cells(self.rows[k]) == 0
     }
 
+    /// Whether the curve of a node is a fold, which may fade out.
+    pub(super) fn is_fold<S: Scalar>(&self, ground: &Ground<'_, '_, S>, k: usize) -> bool {
+        self.kind == StratumKind::Curve && ground.strata.cells(self.rows[k]) == 2
+    }
+
     /// Whether two nodes are known to be on different curves.
     pub(super) fn parted<S: Scalar>(&self, ground: &Ground<'_, '_, S>, a: usize, b: usize) -> bool {
         matches!((self.branches[a], self.branches[b]), (Some(x), Some(y)) if x.0 == y.0 && x.1 != y.1)

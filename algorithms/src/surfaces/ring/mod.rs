@@ -46,6 +46,7 @@ pub struct RingConformations {
 
 /// Conformations drawn by [`RingConformations::sample`].
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct RingSample {
     /// The conformations, 3 coordinates an atom (x, y, z of atom 0, of atom 1, ..), in random order.
     pub points: PointCloud<f64>,

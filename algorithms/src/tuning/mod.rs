@@ -4,6 +4,15 @@
 //! separation dl), so that none of them knows the unit of the data. What was measured is in the guide, chapter
 //! on decisions; what is not said there to be measured was chosen once and never varied.
 
+mod front;
+mod models;
+
+pub use front::FrontTuning;
+pub use models::{
+    BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,
+    TwoPlanesTuning, YJunctionTuning,
+};
+
 use serde::Serialize;
 
 /// All of them. [`Tuning::MEASURED`] is what the program runs with.
@@ -11,21 +20,30 @@ use serde::Serialize;
 pub struct Tuning {
     /// Which stratum every point is in.
     pub analysis: AnalysisTuning,
+    /// Points in which curves end.
+    pub ends: EndTuning,
     /// Landmarks and chains along the curves.
     pub skeleton: SkeletonTuning,
     /// Cells and the neighborhoods in them.
     pub cells: CellTuning,
+    /// Stars that cannot be closed.
+    pub front: FrontTuning,
     /// Landmarks added where triangles stray from the points.
     pub refinement: RefinementTuning,
+    /// When the program's own models believe a fit.
+    pub models: ModelTuning,
 }
 
 impl Tuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         analysis: AnalysisTuning::MEASURED,
+        ends: EndTuning::MEASURED,
         skeleton: SkeletonTuning::MEASURED,
         cells: CellTuning::MEASURED,
+        front: FrontTuning::MEASURED,
         refinement: RefinementTuning::MEASURED,
+        models: ModelTuning::MEASURED,
     };
 }
 
@@ -94,6 +112,44 @@ impl AnalysisTuning {
     };
 }
 
+/// What decides where double curves end. Shares are of the radius of the analysis unless said otherwise.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EndTuning {
+    /// A point of a curve is an end when the middle of the curve within the radius is off by more than this;
+    /// it is 0.5 at the end of a straight curve, and 0 inside.
+    pub shift: f64,
+    /// Radii of the balls in which a model is asked, one after another until it answers.
+    pub radii: [f64; 5],
+    /// Widest ball, where a model asks for a wider one.
+    pub widest: f64,
+    /// A model that needs a wider ball gets one wider by this factor than it asks for.
+    pub spare: f64,
+    /// A ball whose center is farther than this share of its radius from the point that it shows is laid anew
+    /// about that point.
+    pub off_center: f64,
+    /// How often a ball is laid anew.
+    pub attempts: usize,
+    /// Gaps of the curves about an end that are wider than this are filled by the points beside them.
+    pub gap: f64,
+    /// Farthest of the innermost landmarks of the cells about an end, in dl: with those of a random choice
+    /// the triangle between two curves was often that of two cells.
+    pub innermost: f64,
+}
+
+impl EndTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        shift: 0.3,
+        radii: [1.0, 1.4, 2.0, 2.8, 4.0],
+        widest: 5.0,
+        spare: 1.08,
+        off_center: 0.15,
+        attempts: 5,
+        gap: 0.1,
+        innermost: 1.2,
+    };
+}
+
 /// What decides where landmarks and chains lie along curves. Shares are of dl.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SkeletonTuning {
@@ -147,6 +203,9 @@ pub struct CellTuning {
     pub contact_reach: f64,
     /// Every point of a curve has a landmark or a labelling fit within this.
     pub curve_gap: f64,
+    /// Landmarks are on one sheet where a quadratic height follows them this closely: sheets that
+    /// are nearer to each other than that share no landmarks' spacing could tell apart.
+    pub flat: f64,
     /// Fewest members of a neighborhood. Where landmarks are sparse a chart of the usual radius misses
     /// triangles that it has to keep clear of: charts with fewer members are widened.
     pub least_members: usize,
@@ -163,6 +222,7 @@ impl CellTuning {
         contacts: 6,
         contact_reach: 2.0,
         curve_gap: 0.7,
+        flat: 0.1,
         least_members: 14,
         widening: 1.25,
         widenings: 2,
@@ -184,6 +244,14 @@ pub struct RefinementTuning {
     pub rounds: usize,
     /// Share of landmarks whose star stayed open above which more landmarks are no remedy.
     pub open_share: f64,
+    /// A point farther than this from the mesh is left behind: at a right-angled edge, whose middle no landmark is
+    /// near, triangles pass half of a separation below.
+    pub behind: f64,
+    /// Nearest points of one that is left behind, half of which are at least half as far from the mesh: an outlier
+    /// has no such company.
+    pub company: usize,
+    /// Rounds of landmarks at points that are left behind.
+    pub mends: usize,
 }
 
 impl RefinementTuning {
@@ -195,5 +263,8 @@ impl RefinementTuning {
         growth: 1.5,
         rounds: 4,
         open_share: 0.01,
+        behind: 0.6,
+        company: 4,
+        mends: 3,
     };
 }

@@ -1,0 +1,87 @@
+//! Parts of the mesh about an empty region, and the points on them.
+
+use super::ground::Count;
+use super::search::Search;
+use super::tiles::{Cut, Shape, TILE};
+use crate::certificate::geometry::corners;
+use std::collections::BTreeSet;
+
+/// Points that are counted around a gap in any case.
+const LEAST_AROUND: f64 = 40.0;
+
+impl Search<'_> {
+    /// Area of the part of a triangle that is `inside`.
+    pub(super) fn part(&self, t: u32, spacing: f64, inside: &impl Fn(&[f64]) -> bool) -> f64 {
+        let shape = Shape::new(corners(self.mesh, t));
+        let mut place = vec![0.0; self.mesh.vertices.dimension()];
+        let mut area = 0.0;
+        shape.cut(&mut place, &mut |tile, place| {
+            let scale = tile.scale();
+            if shape.longest * scale > TILE * spacing {
+                return Cut::Further;
+            }
+            if inside(place) {
+                area += self.ground.areas[t as usize] * scale * scale;
+            }
+            Cut::Leave
+        });
+        area
+    }
+
+    /// Triangles connected with `from` over those that are `near`.
+    pub(super) fn grown(&self, from: &[u32], near: impl Fn(u32) -> bool) -> Vec<u32> {
+        let mut seen: BTreeSet<u32> = from.iter().copied().collect();
+        let mut all: Vec<u32> = seen.iter().copied().collect();
+        let mut k = 0;
+        while k < all.len() {
+            for v in self.mesh.complex.triangles[all[k] as usize] {
+                for &t in self.incidence.at_vertex(v as usize) {
+                    if seen.insert(t) && near(t) {
+                        all.push(t);
+                    }
+                }
+            }
+            k += 1;
+        }
+        all
+    }
+
+    /// Area and points of rings about triangles that hold `wanted` points and are of one density, where `counts` holds.
+    pub(super) fn around(
+        &self,
+        from: &[u32],
+        wanted: f64,
+        counts: impl Fn(&[f64]) -> bool,
+    ) -> Count {
+        let mut seen: BTreeSet<u32> = from.iter().copied().collect();
+        let mut ring: Vec<u32> = seen.iter().copied().collect();
+        let mut all = Count::default();
+        // rings that are denser by chance would be taken for another density
+        let (least, wanted) = if self.varies {
+            (LEAST_AROUND, wanted)
+        } else {
+            (f64::INFINITY, 2.0 * wanted)
+        };
+        while !ring.is_empty() {
+            let mut own = Count::default();
+            for &t in &ring {
+                let corner = self.mesh.complex.triangles[t as usize];
+                let density = self.ground.density_at(corner, [1.0 / 3.0; 3]);
+                own.points += f64::from(self.ground.counts[t as usize]);
+                own.ground += self.part(t, 1.0 / density.sqrt(), &counts);
+            }
+            if !all.take(own, least, wanted) || all.points >= wanted {
+                break;
+            }
+            let mut next = Vec::new();
+            for &t in &ring {
+                for v in self.mesh.complex.triangles[t as usize] {
+                    let at = self.incidence.at_vertex(v as usize);
+                    next.extend(at.iter().filter(|&&t| seen.insert(t)));
+                }
+            }
+            ring = next;
+        }
+        all
+    }
+}

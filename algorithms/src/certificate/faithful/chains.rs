@@ -1,0 +1,199 @@
+//! Chains of places far from the points: slits and cuts.
+
+use super::chance::{self, LEVELS};
+use super::discs::{Empty, Gap};
+use super::ground::{COUNTED, Count};
+use super::search::Search;
+use super::tiles::{Shape, TILE};
+use crate::balls::BallTree;
+use crate::certificate::geometry::corners;
+
+/// Chains of a level that are measured, largest first.
+const MEASURED: usize = 12;
+/// Tiles hang together when their middles are this near, in spacings.
+const TOGETHER: f64 = 1.1 * TILE;
+/// The same for a chain, which is long and thin and takes little from the counts around it.
+const ALONG: f64 = 1.1;
+
+impl Search<'_> {
+    /// The chains of tiles of every level, as gaps.
+    pub(super) fn chains(&self, tiles: &[Empty], middles: &[f64], gaps: &mut Vec<Gap>) {
+        let pairs = self.pairs(tiles, middles);
+        let mut sets = Sets::new(tiles);
+        let mut next = 0;
+        let least = self.least_level();
+        for level in LEVELS.iter().rev().filter(|l| l.radius >= least) {
+            let radius = self.even.radius(level.radius);
+            while next < pairs.len() && pairs[next].0 >= radius {
+                sets.join(pairs[next].1, pairs[next].2);
+                next += 1;
+            }
+            let deep: Vec<u32> = (0..tiles.len() as u32)
+                .filter(|&k| tiles[k as usize].away >= radius)
+                .collect();
+            let mut chains: Vec<(f64, u32)> = Vec::new();
+            for &k in &deep {
+                if sets.root(k) == k {
+                    chains.push((sets.measure[k as usize], k));
+                }
+            }
+            chains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            chains.truncate(MEASURED);
+            if chains.is_empty() {
+                continue;
+            }
+            let mut members = vec![Vec::new(); chains.len()];
+            for k in deep {
+                let root = sets.root(k);
+                if let Some(at) = chains.iter().position(|c| c.1 == root) {
+                    members[at].push(k);
+                }
+            }
+            for chain in &members {
+                let (mut gap, counted) = self.measured(chain, tiles, middles);
+                let random = (level.radius / radius).powi(2);
+                let measure = chance::known(gap.expected * random, counted);
+                gap.p = level.chain(self.points() as f64, measure);
+                gaps.push(gap);
+            }
+        }
+    }
+
+    /// A chain as a gap, and the number of points around that its density is counted from. Its probability is left to the caller.
+    fn measured(&self, chain: &[u32], tiles: &[Empty], middles: &[f64]) -> (Gap, f64) {
+        let width = self.mesh.vertices.dimension();
+        let at = |k: u32| &middles[k as usize * width..(k as usize + 1) * width];
+        let widest = chain.iter().copied().fold(chain[0], |best, k| {
+            if tiles[k as usize].away > tiles[best as usize].away {
+                k
+            } else {
+                best
+            }
+        });
+        let triangle = tiles[widest as usize].triangle;
+        let places = chain.iter().flat_map(|&k| at(k).iter().copied()).collect();
+        let (empty, around) = self.emptied(
+            chain,
+            tiles,
+            places,
+            1.0 / self.middle_density(triangle).sqrt(),
+        );
+        let own = chain
+            .iter()
+            .map(|&k| self.middle_density(tiles[k as usize].triangle))
+            .sum::<f64>()
+            / chain.len() as f64;
+        let most = if self.varies {
+            ALONG * own
+        } else {
+            f64::INFINITY
+        };
+        let (density, counted) = (around.density().min(most), around.points);
+        let (away, end) = self.distances(at(widest));
+        let gap = Gap {
+            width: 2.0 * away.min(end) * density.sqrt(),
+            size: 2.0 * away.min(end),
+            expected: empty * density,
+            p: 1.0,
+            triangle,
+            place: at(widest).to_vec(),
+        };
+        (gap, counted)
+    }
+
+    /// Area of the empty discs about the tiles of a chain, whose middles are `places`, and what is around them.
+    fn emptied(
+        &self,
+        chain: &[u32],
+        tiles: &[Empty],
+        places: Vec<f64>,
+        spacing: f64,
+    ) -> (f64, Count) {
+        let width = self.mesh.vertices.dimension();
+        let tree = BallTree::new(width, &places);
+        let mut triangles: Vec<u32> = chain.iter().map(|&k| tiles[k as usize].triangle).collect();
+        triangles.dedup();
+        let radius = |&k: &u32| {
+            let tile = &tiles[k as usize];
+            let corner = self.mesh.complex.triangles[tile.triangle as usize];
+            tile.away / self.ground.density_at(corner, tile.weights).sqrt()
+        };
+        let discs: Vec<f64> = chain.iter().map(radius).collect();
+        let reach = discs.iter().copied().fold(0.0, f64::max);
+        let inside = |p: &[f64]| {
+            tree.any_within(p, reach, |k, square| {
+                square < discs[k as usize] * discs[k as usize]
+            })
+        };
+        let near = |t: u32| {
+            let shape = Shape::new(corners(self.mesh, t));
+            let mut place = vec![0.0; width];
+            shape.place([1.0 / 3.0; 3], &mut place);
+            tree.any_within(&place, reach + shape.radius, |_, _| true)
+        };
+        let region = self.grown(&triangles, near);
+        let empty: f64 = region.iter().map(|&t| self.part(t, spacing, &inside)).sum();
+        let expected = empty / (spacing * spacing);
+        let around = self.around(&triangles, COUNTED.max(2.0 * expected), |p| !inside(p));
+        (empty, around)
+    }
+
+    /// Density of the points at the middle of a triangle.
+    fn middle_density(&self, triangle: u32) -> f64 {
+        let corner = self.mesh.complex.triangles[triangle as usize];
+        self.ground.density_at(corner, [1.0 / 3.0; 3])
+    }
+
+    /// Pairs of tiles that hang together, by the lesser of their distances, largest first.
+    fn pairs(&self, tiles: &[Empty], middles: &[f64]) -> Vec<(f64, u32, u32)> {
+        let width = self.mesh.vertices.dimension();
+        let tree = BallTree::new(width, middles);
+        let mut pairs = Vec::new();
+        for (k, tile) in tiles.iter().enumerate() {
+            let corner = self.mesh.complex.triangles[tile.triangle as usize];
+            let reach = TOGETHER / self.ground.density_at(corner, [1.0 / 3.0; 3]).sqrt();
+            tree.within(&middles[k * width..(k + 1) * width], reach, |other, _| {
+                if other != k as u32 {
+                    let away = tile.away.min(tiles[other as usize].away);
+                    pairs.push((away, other.min(k as u32), other.max(k as u32)));
+                }
+            });
+        }
+        pairs.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        pairs.dedup();
+        pairs
+    }
+}
+
+/// Sets of tiles with their measures.
+struct Sets {
+    parent: Vec<u32>,
+    measure: Vec<f64>,
+}
+
+impl Sets {
+    fn new(tiles: &[Empty]) -> Self {
+        Self {
+            parent: (0..tiles.len() as u32).collect(),
+            measure: tiles.iter().map(|t| t.measure).collect(),
+        }
+    }
+
+    fn root(&mut self, mut a: u32) -> u32 {
+        while self.parent[a as usize] != a {
+            let up = self.parent[self.parent[a as usize] as usize];
+            self.parent[a as usize] = up;
+            a = up;
+        }
+        a
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (p, q) = (self.root(a), self.root(b));
+        if p != q {
+            let (low, high) = (p.min(q), p.max(q));
+            self.parent[high as usize] = low;
+            self.measure[low as usize] += self.measure[high as usize];
+        }
+    }
+}

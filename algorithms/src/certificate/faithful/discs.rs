@@ -1,0 +1,138 @@
+//! The largest empty disc, and the places of the mesh that are far from the points.
+
+use super::chance::{self, LEVELS};
+use super::ground::COUNTED;
+use super::search::Search;
+use super::tiles::{Cut, Shape, TILE};
+use crate::certificate::geometry::corners;
+use crosscap_core::squared_distance;
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// Points above which the slits of less than two spacings are not looked for: they cannot be told from
+/// chance there, and their places are many.
+const MANY: usize = 20_000;
+/// Least radius of a level where there are many points, in spacings.
+const WIDE_LEVEL: f64 = 1.0;
+/// The same where their density varies, and for even points, where small differences in density make all triangles of
+/// a region gaps.
+const CLEAR_LEVEL: f64 = 1.3;
+/// Where the density varies, the most that the density around a hole may be above that of its own places, which the empty region itself
+/// makes seem thinner: more than that is a density that varies.
+const AROUND: f64 = 1.4;
+
+/// An empty region of the points that the mesh covers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Gap {
+    /// Diameter of its largest empty disc, in local spacings.
+    pub width: f64,
+    /// The same, unit of the data.
+    pub size: f64,
+    /// Number of points expected in it, at the density around.
+    pub expected: f64,
+    /// Probability that chance leaves such a gap anywhere in a sample like this one.
+    pub p: f64,
+    /// Triangle of its middle.
+    pub triangle: u32,
+    /// Its middle.
+    pub place: Vec<f64>,
+}
+
+/// A small part of the mesh that is far from the points.
+pub(super) struct Empty {
+    pub triangle: u32,
+    /// Weights of its middle.
+    pub weights: [f64; 3],
+    /// Distance to the nearest point or to the end of the mesh, in spacings.
+    pub away: f64,
+    /// Number of points expected on it.
+    pub measure: f64,
+}
+
+impl Search<'_> {
+    /// Radius of the level from which on chains are looked for.
+    pub(super) fn least_level(&self) -> f64 {
+        if self.varies || self.even.is_even() {
+            CLEAR_LEVEL
+        } else if self.points() > MANY {
+            WIDE_LEVEL
+        } else {
+            LEVELS[0].radius
+        }
+    }
+
+    /// Tiles further from the points than the least level asks, with their middles one after the other.
+    pub(super) fn far_tiles(&self) -> (Vec<Empty>, Vec<f64>) {
+        let least = self.even.radius(self.least_level());
+        let mut place = vec![0.0; self.mesh.vertices.dimension()];
+        let (mut tiles, mut middles) = (Vec::new(), Vec::new());
+        for (t, &corner) in self.mesh.complex.triangles.iter().enumerate() {
+            let shape = Shape::new(corners(self.mesh, t as u32));
+            let most = corner.map(|v| self.ground.density[v as usize]);
+            let most = most.into_iter().fold(0.0, f64::max).sqrt();
+            if !(most > 0.0 && shape.longest > 0.0) {
+                continue;
+            }
+            shape.cut(&mut place, &mut |tile, place| {
+                let (scale, weights) = (tile.scale(), tile.middle());
+                let (away, end) = self.distances(place);
+                let (away, radius) = (away.min(end), shape.radius * scale);
+                if (away + radius) * most < least {
+                    return Cut::Leave;
+                }
+                let density = self.ground.density_at(corner, weights);
+                if shape.longest * scale * density.sqrt() > TILE {
+                    return Cut::Further;
+                }
+                if away * density.sqrt() >= least {
+                    tiles.push(Empty {
+                        triangle: t as u32,
+                        weights,
+                        away: away * density.sqrt(),
+                        measure: self.ground.areas[t] * scale * scale * density,
+                    });
+                    middles.extend_from_slice(place);
+                }
+                Cut::Leave
+            });
+        }
+        (tiles, middles)
+    }
+
+    /// The largest empty disc.
+    pub(super) fn widest(&self, tiles: &[Empty], middles: &[f64]) -> Option<Gap> {
+        let width = self.mesh.vertices.dimension();
+        let (k, tile) = tiles
+            .iter()
+            .enumerate()
+            .max_by(|a, b| a.1.away.total_cmp(&b.1.away).then(b.0.cmp(&a.0)))?;
+        let place = &middles[k * width..(k + 1) * width];
+        let (away, end) = self.distances(place);
+        let away = away.min(end);
+        // the density around, without the disc itself
+        let around = self.around(&[tile.triangle], COUNTED, |p| {
+            squared_distance(p, place) > away * away
+        });
+        let own = (tile.away / away).powi(2);
+        let most = if self.varies {
+            AROUND * own
+        } else {
+            f64::INFINITY
+        };
+        let (density, counted) = (around.density().min(most), around.points);
+        let expected = PI * away * away * density;
+        let p = chance::disc(
+            self.points() as f64,
+            chance::known(self.even.random(expected), counted),
+        );
+        Some(Gap {
+            width: 2.0 * away * density.sqrt(),
+            size: 2.0 * away,
+            expected,
+            p,
+            triangle: tile.triangle,
+            place: place.to_vec(),
+        })
+    }
+}

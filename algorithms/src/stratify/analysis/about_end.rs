@@ -1,0 +1,168 @@
+//! What a model says about the end of a curve.
+
+use super::fitter::{Fitter, Scratch, View};
+use crate::audit;
+use crate::stratify::curve_ends::{EndRegion, Settled};
+use crate::stratify::site::{FitUsed, On, StratumKind};
+use crosscap_core::{Decomposition, Located, Rejection, Scalar};
+
+/// A fit about an end.
+struct Shown {
+    fit: Decomposition,
+    /// What it says of the points of the ball.
+    located: Vec<Option<Located>>,
+    view: View,
+    /// The point in which the curve ends.
+    place: Box<[f64]>,
+}
+
+/// A ball in which a model is asked.
+#[derive(Clone, Copy)]
+struct Ball {
+    center: usize,
+    radius: f64,
+}
+
+impl<S: Scalar> Fitter<'_, S> {
+    /// The region about the end of a curve at `row` by a model, and what becomes of its rows: first in the
+    /// ball of the given radius, then in one about the point that it shows, wider where the model asks for it.
+    /// `eps` is the radius of the analysis.
+    pub(in crate::stratify) fn about_end(
+        &self,
+        model: usize,
+        row: usize,
+        radius: f64,
+        eps: f64,
+        scratch: &mut Scratch<S>,
+    ) -> Option<(EndRegion, Vec<Settled>)> {
+        let tuning = &self.tuning.ends;
+        let mut ball = Ball {
+            center: row,
+            radius,
+        };
+        for _ in 0..tuning.attempts {
+            if ball.radius > tuning.widest * eps {
+                return None;
+            }
+            let shown = match self.shown(model, ball, scratch)? {
+                Ok(shown) => shown,
+                Err(Rejection::NeighborhoodTooSmall { needed }) => {
+                    ball.radius = tuning.spare * needed;
+                    continue;
+                }
+                Err(_) => return None,
+            };
+            let far = |row: usize| self.far(row, &shown.place);
+            let rows = scratch.near.iter().map(|x| x.index);
+            let nearest = rows.min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)))?;
+            let shift = far(ball.center);
+            if shift > tuning.off_center * ball.radius && nearest != ball.center {
+                ball.center = nearest;
+                continue;
+            }
+            let used = FitUsed {
+                model: model as u8,
+                radius: eps,
+            };
+            return self.region(shown, ball.radius - shift, used, scratch);
+        }
+        None
+    }
+
+    /// What a model shows in a ball, or why it does not; `None` for a ball that it cannot be asked about.
+    fn shown(
+        &self,
+        model: usize,
+        ball: Ball,
+        scratch: &mut Scratch<S>,
+    ) -> Option<Result<Shown, Rejection>> {
+        let engine = self.models[model].as_ref();
+        let view = self.view(ball.center, ball.radius, ball.radius, scratch)?;
+        if view.frame.spreads_beyond(engine.local_dimension()) {
+            return None;
+        }
+        let all: Vec<usize> = (0..scratch.near.len()).collect();
+        let local = self.local(&view, engine, scratch);
+        let (fit, located) = match engine.decompose_about(&local, &all) {
+            Ok(found) => found,
+            Err(rejection) => return Some(Err(rejection)),
+        };
+        let fit = audit::sound(Ok(fit), &local, engine, ball.center, &self.faults)?;
+        let located = audit::placed(located, &all, &local, engine, ball.center, &self.faults);
+        let point = fit.points.first()?;
+        let place = self.moved(ball.center, &view, local.point(view.center), point);
+        Some(Ok(Shown {
+            fit,
+            located,
+            view,
+            place,
+        }))
+    }
+
+    /// The rows nearer than `reach` to the point that a fit shows, with what it says of them.
+    fn region(
+        &self,
+        shown: Shown,
+        reach: f64,
+        used: FitUsed,
+        scratch: &mut Scratch<S>,
+    ) -> Option<(EndRegion, Vec<Settled>)> {
+        let Shown {
+            mut fit,
+            located,
+            view,
+            place,
+        } = shown;
+        let rows: Vec<usize> = scratch.near.iter().map(|x| x.index).collect();
+        let engine = self.models[usize::from(used.model)].as_ref();
+        let local = self.local(&view, engine, scratch);
+        let labels = std::mem::take(&mut fit.labels);
+        let mut own: Vec<(u32, u8, Settled)> = Vec::new();
+        for (k, located) in located.into_iter().enumerate() {
+            let row = rows[k];
+            if self.far(row, &place) < reach {
+                let located = located?;
+                let to = self.moved(row, &view, local.point(k), &located.place);
+                own.push((row as u32, labels[k], settled(row, located, to, used)));
+            }
+        }
+        own.sort_by_key(|x| x.0);
+        let region = EndRegion {
+            labels: own.iter().map(|x| (x.0, x.1)).collect(),
+            fit,
+            place: place.into(),
+            reach,
+        };
+        Some((region, own.into_iter().map(|x| x.2).collect()))
+    }
+
+    /// How far a row is from a place.
+    fn far(&self, row: usize, place: &[f64]) -> f64 {
+        let own = self.cloud.point(row).iter().map(|x| x.as_f64());
+        let squares = own.zip(place).map(|(x, p)| (x - p) * (x - p));
+        squares.sum::<f64>().sqrt()
+    }
+}
+
+/// What becomes of a row that a fit has located.
+fn settled(row: usize, located: Located, place: Box<[f64]>, used: FitUsed) -> Settled {
+    let kind = match (located.dimension, located.cells) {
+        (0, _) => StratumKind::Point,
+        (_, 1) => StratumKind::Boundary,
+        _ => StratumKind::Curve,
+    };
+    let on = On {
+        kind,
+        place: Some(place),
+        moved: located.offset,
+        fit: (kind != StratumKind::Boundary).then_some(used),
+        cells: located.cells,
+    };
+    let inside = located.dimension == 2;
+    let beside = inside && located.offset.is_finite();
+    Settled {
+        row,
+        on: (!inside).then(|| on.clone()),
+        beside: beside.then_some(on),
+    }
+}

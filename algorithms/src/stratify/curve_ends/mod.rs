@@ -1,0 +1,77 @@
+//! Points at which curves end inside a sheet: what is there is asked of models that say so, with balls as
+//! wide as it takes, and their answers stand for all points about the end.
+
+mod enter;
+mod free;
+mod region;
+mod wards;
+
+pub(super) use region::{EndRegion, Settled, innermost};
+pub(super) use wards::Wards;
+
+use super::analysis::{Analyzer, Scratch};
+use super::site::{Site, StratumKind};
+use super::strata::Strata;
+use crosscap_core::{Error, Scalar};
+
+/// A region, and what becomes of its rows.
+type Found = (EndRegion, Vec<Settled>);
+
+/// What a model says about the end of a curve.
+struct Answer {
+    region: EndRegion,
+    settled: Vec<Settled>,
+    /// Radius of the analysis there.
+    eps: f64,
+}
+
+/// Asks what is at the ends of double curves, and enters the answers. Where no curve was found, or no model
+/// knows of ends, nothing is done.
+///
+/// # Errors
+/// [`Error::Law`] for what a model breaks.
+pub(super) fn explain<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    strata: &mut Strata,
+) -> Result<(), Error> {
+    let models: Vec<usize> = (0..analyzer.models.len())
+        .filter(|&m| analyzer.models[m].explains_ends())
+        .collect();
+    let on_curve = |site: &Site| site.kind() == Some(StratumKind::Curve);
+    if models.is_empty() || !strata.sites().iter().any(on_curve) {
+        return Ok(());
+    }
+    let fitter = analyzer.fitter("since ends of curves are looked at in them")?;
+    let tuning = &analyzer.tuning.ends;
+    let mut scratch = Scratch::default();
+    let mut answers: Vec<Answer> = Vec::new();
+    for (row, eps) in free::ends(analyzer, strata) {
+        let found = tuning.radii.iter().find_map(|factor| {
+            let one = |&m: &usize| fitter.about_end(m, row, factor * eps, eps, &mut scratch);
+            // The order of the models changes nothing.
+            let better = |a: &Found, b: &Found| {
+                let [a, b] = [&a.0.fit, &b.0.fit];
+                let order = a.residual.total_cmp(&b.residual);
+                order.then(a.parameters.cmp(&b.parameters))
+            };
+            models.iter().filter_map(one).min_by(better)
+        });
+        let Some((region, settled)) = found else {
+            continue;
+        };
+        // Two ends may lead to one point; the first of them is an end more than the other.
+        let other = |a: &Answer| a.region.distance(&region.place) > eps;
+        if answers.iter().all(other) {
+            answers.push(Answer {
+                region,
+                settled,
+                eps,
+            });
+        }
+    }
+    region::part(fitter.cloud, &mut answers);
+    for answer in answers {
+        enter::enter(strata, fitter.cloud, answer, tuning);
+    }
+    fitter.faults.none()
+}

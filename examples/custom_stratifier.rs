@@ -1,0 +1,91 @@
+//! A way of one's own from a cloud to the waist: charts of the nearest landmarks instead of charts of one radius.
+
+use crosscap::algorithms::stratify::{Analysis, Ground, Stratification, Stratifier, WaistProducer};
+use crosscap::core::{CellNeighborhood, Error, MetricSpace, SparseDistances, StratifiedLandmarks};
+use crosscap::prelude::*;
+
+/// Charts of so many landmarks, on surfaces without curves: they grow where points are thin.
+struct NearestLandmarks(usize);
+
+impl Stratifier<f64> for NearestLandmarks {
+    /// Every point is inside a cell: no dimension is estimated, no model asked.
+    fn analyze(&self, ground: &Ground<'_, f64>) -> Result<Analysis, Error> {
+        Ok(Analysis::of_surface(ground.analyzer.space.len()))
+    }
+
+    fn cut<'p>(
+        &'p self,
+        ground: &'p Ground<'p, f64>,
+        _analysis: &'p Analysis,
+    ) -> Result<Box<dyn WaistProducer<f64> + 'p>, Error> {
+        let space = ground.analyzer.space;
+        let all: Vec<usize> = (0..space.len()).collect();
+        let (dl, seed) = (ground.options.dl, ground.options.seed);
+        let rows = (ground.selector).select(space.oracle(), &all, &[], dl, seed)?;
+        Ok(Box::new(Charts {
+            size: self.0,
+            metric: space.metric(),
+            rows,
+        }))
+    }
+
+    fn name(&self) -> &str {
+        "nearest-landmarks"
+    }
+}
+
+/// The landmarks that were chosen.
+struct Charts<'p> {
+    size: usize,
+    metric: &'p dyn MetricSpace<Scalar = f64>,
+    rows: Vec<usize>,
+}
+
+impl WaistProducer<f64> for Charts<'_> {
+    /// Landmarks that are asked for behind those that were chosen.
+    fn waist(&self, extra: &[usize]) -> Result<Stratification<f64>, Error> {
+        let mut rows = self.rows.clone();
+        rows.extend(extra.iter().filter(|&&row| self.may_add(row)));
+        let count = rows.len() as u32;
+        let apart = |a: u32, b: u32| (self.metric).distance(rows[a as usize], rows[b as usize]);
+        let around = |center: u32| {
+            let mut members: Vec<u32> = (0..count).collect();
+            // The center itself comes first, at distance 0.
+            members.sort_by(|&a, &b| {
+                let order = apart(center, a).total_cmp(&apart(center, b));
+                order.then(a.cmp(&b))
+            });
+            members.truncate(self.size);
+            CellNeighborhood { center, members }
+        };
+        let neighborhoods: Vec<CellNeighborhood> = (0..count).map(around).collect();
+        let waist = StratifiedLandmarks {
+            strata: vec![2; rows.len()],
+            curve_edges: Vec::new(),
+            distances: SparseDistances::within(rows.len(), &neighborhoods, apart)?,
+            neighborhoods,
+        };
+        Ok(Stratification::new(waist, rows))
+    }
+
+    fn may_add(&self, row: usize) -> bool {
+        row < self.metric.len() && !self.rows.contains(&row)
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let sphere = SampleSurface::find("sphere")?;
+    let points = sphere.sample(&Sampling::new(4000, 7))?.points;
+    let outcome = Pipeline::new(Parameters::new(0.4, 0.2))?
+        .stratifier(Box::new(NearestLandmarks(28)))
+        .reconstruct(&points)?;
+    println!(
+        "{}: {} landmarks, {:.1} members a chart, Betti numbers {:?}, verified: {}",
+        outcome.report.plugins.stratifier,
+        outcome.report.landmarks.landmarks,
+        outcome.report.landmarks.mean_members,
+        outcome.homology.betti_rational,
+        outcome.is_verified()
+    );
+    Ok(())
+}
