@@ -1,14 +1,14 @@
 //! A double curve that ends where the boundaries of its two sheets cross.
 
+use super::curve_end::{self, CurveEnd, REACH};
 use super::flats::Flat;
-use super::patch::{PATCH_POINTS, off_one_sheet};
+use super::patch::PATCH_POINTS;
 use super::rim::Rim;
 use super::sheets::Sheets;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::two_planes::PlanePair;
 use crosscap_core::{
     Decomposition, Error, Link, LinkKind, LocalPoints, Located, Rejection, SingularityModel,
-    Stratum,
 };
 use nalgebra::Vector3;
 
@@ -23,10 +23,6 @@ pub struct CrossingEnd {
     tolerance: Tolerance,
 }
 
-/// Greatest share of the points farther than ep from both sheets.
-const MOST_ASTRAY: f64 = 0.03;
-/// The sheets must be followed this much better than by one quadratic patch.
-const GAIN: f64 = 0.5;
 /// Least share of the points that each of the four cells holds.
 const LEAST_CELL_SHARE: f64 = 0.03;
 /// Least sine of the angle of the sheets where they end, 20 degrees: at a pinch point it goes to zero.
@@ -36,12 +32,8 @@ const LEAST_CROSSING: f64 = 0.5;
 /// The curve meets the two boundaries at most so many ep apart: each runs inside the true one by as much as
 /// the points are apart, about 1.5 ep at 150 points in a neighborhood.
 const MOST_APART: f64 = 3.0;
-/// The end lies within this share of the radius.
-const REACH: f64 = 0.7;
 /// Farthest that the center is from the double curve, as a share of the radius.
 const LARGEST_STEP: f64 = 0.6;
-/// A point off the curves tells where they are up to this many ep.
-const WITNESS_REACH: f64 = 3.0;
 
 /// Labels: the point, the double curve, the boundary of each cell, then the cells.
 const POINT: u8 = 0;
@@ -119,15 +111,8 @@ impl CrossingEnd {
         };
         let sum = points.iter().map(|x| off(x).powi(2)).sum();
         let residual = self.tolerance.residual(sum, points.len())?;
-        let simpler = off_one_sheet(points, radius);
-        if residual > GAIN * simpler {
-            return Err(Rejection::SimplerModelFits { residual, simpler });
-        }
-        let limit = self.tolerance.ep;
-        let astray = points.iter().filter(|x| off(x) > limit).count();
-        if astray as f64 > MOST_ASTRAY * points.len() as f64 {
-            return Err(Rejection::PoorFit { residual, limit });
-        }
+        curve_end::gains(residual, points, radius)?;
+        curve_end::follows(points.iter().map(off), residual, self.tolerance.ep)?;
         Ok(residual)
     }
 }
@@ -190,8 +175,30 @@ impl Fit {
             None => Ok(()),
         }
     }
+}
 
-    /// Label of a row, the nearest place on a curve, and how many cells meet there.
+impl CurveEnd for Fit {
+    const STRATA: &'static [u8] = &[0, 1, 1, 1, 1, 1, 2, 2, 2, 2];
+    const CELLS: &'static [u8] = &[4, 1, 1, 1, 1];
+    // Two patches and the parabolas at their ends.
+    const PARAMETERS: usize = 2 * 6 + 2 * 3;
+
+    fn points(&self) -> &[Vector3<f64>] {
+        &self.all
+    }
+
+    fn end(&self) -> Vector3<f64> {
+        self.end
+    }
+
+    fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    fn ep(&self) -> f64 {
+        self.ep
+    }
+
     fn locate(&self, row: usize) -> (u8, Vector3<f64>, u8) {
         let x = self.all[row];
         let own = usize::from(self.sheets.owner[row]);
@@ -207,26 +214,6 @@ impl Fit {
             (_, _, true) => (FIRST_RIM + cell, on_rim, 1),
             (Some(place), _, _) if (place - x).norm() < inside => (FIRST_CELL + cell, place, 4),
             _ => (FIRST_CELL + cell, on_rim, 1),
-        }
-    }
-
-    fn located(&self, row: usize) -> Located {
-        let (label, place, cells) = self.locate(row);
-        let dimension = match label {
-            POINT => 0,
-            label if label < FIRST_CELL => 1,
-            _ => 2,
-        };
-        let offset = (place - self.all[row]).norm();
-        let (place, offset) = match dimension < 2 || offset < WITNESS_REACH * self.ep {
-            true => (place, offset),
-            false => (self.all[row], f64::INFINITY),
-        };
-        Located {
-            dimension,
-            cells,
-            place: place.iter().copied().collect(),
-            offset,
         }
     }
 }
@@ -257,21 +244,7 @@ impl SingularityModel for CrossingEnd {
         local: &LocalPoints<'_>,
         rows: &[usize],
     ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
-        let fit = self.fit(local)?;
-        let center = fit.located(local.center);
-        let located = rows.iter().map(|&row| Some(fit.located(row))).collect();
-        let dimensions = [0, 1, 1, 1, 1, 1, 2, 2, 2, 2];
-        let decomposition = Decomposition {
-            strata: dimensions.map(|dimension| Stratum { dimension }).to_vec(),
-            labels: (0..fit.all.len()).map(|row| fit.locate(row).0).collect(),
-            cells_at_curve: vec![4, 1, 1, 1, 1],
-            residual: fit.residual,
-            parameters: 2 * 6 + 2 * 3,
-            points: vec![fit.end.iter().copied().collect()],
-            center: center.place,
-            center_offset: center.offset,
-        };
-        Ok((decomposition, located))
+        Ok(self.fit(local)?.decomposition(local, rows))
     }
 
     fn name(&self) -> &str {

@@ -5,6 +5,7 @@ mod choice;
 mod crossing_end;
 mod curve;
 mod curve_and_sheet;
+mod curve_end;
 mod curve_fit;
 mod envelope;
 mod flats;

@@ -1,11 +1,11 @@
 //! A double curve that ends inside a sheet.
 
-use super::patch::{PATCH_POINTS, off_one_sheet};
+use super::curve_end::{self, CurveEnd, REACH};
+use super::patch::PATCH_POINTS;
 use super::pinch_map::PinchMap;
 use super::tolerance::{Tolerance, at_least, vectors};
 use crosscap_core::{
     Decomposition, Error, Link, LinkKind, LocalPoints, Located, Rejection, SingularityModel,
-    Stratum,
 };
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -24,14 +24,6 @@ pub struct PinchPoint {
     tolerance: Tolerance,
 }
 
-/// Greatest share of the points farther than ep from the sheet.
-const MOST_ASTRAY: f64 = 0.03;
-/// The sheet must be followed this much better than by one quadratic patch.
-const GAIN: f64 = 0.5;
-/// The point lies within this share of the radius.
-const REACH: f64 = 0.7;
-/// A point off the curves tells where they are up to this many ep.
-const WITNESS_REACH: f64 = 3.0;
 /// Sectors of the disc that must all hold points.
 const SECTORS: usize = 8;
 /// Least share of the points of an even spread that a sector holds.
@@ -77,10 +69,7 @@ impl PinchPoint {
         let (map, square) = PinchMap::fit(points, local.radius).ok_or(Rejection::NoRealSolution)?;
         let sum = square * points.len() as f64;
         let residual = self.tolerance.residual(sum, points.len())?;
-        let simpler = off_one_sheet(points, local.radius);
-        if residual > GAIN * simpler {
-            return Err(Rejection::SimplerModelFits { residual, simpler });
-        }
+        curve_end::gains(residual, points, local.radius)?;
         let shift = (map.point() - all[local.center]).norm();
         if shift > REACH * local.radius {
             return Err(Rejection::NoRealSolution);
@@ -92,7 +81,9 @@ impl PinchPoint {
             residual,
             ep: self.tolerance.ep,
         };
-        fit.follows(local.fitted)?;
+        let off = fit.all[..local.fitted].iter().zip(&fit.parameters);
+        let off = off.map(|(x, at)| (fit.map.at(*at) - x).norm());
+        curve_end::follows(off, residual, fit.ep)?;
         fit.surrounds(local.fitted, local.radius - shift)?;
         fit.has_room(local.radius, shift)?;
         Ok(fit)
@@ -109,19 +100,6 @@ struct Fit {
 }
 
 impl Fit {
-    /// Refuses a map that too many of the points are off.
-    fn follows(&self, fitted: usize) -> Result<(), Rejection> {
-        let all = self.all[..fitted].iter().zip(&self.parameters);
-        let astray = all.filter(|(x, at)| (self.map.at(**at) - **x).norm() > self.ep);
-        if astray.count() as f64 > MOST_ASTRAY * fitted as f64 {
-            return Err(Rejection::PoorFit {
-                residual: self.residual,
-                limit: self.ep,
-            });
-        }
-        Ok(())
-    }
-
     /// Refuses a sheet that does not lie all around the point, as far as the ball reaches to all sides of it.
     fn surrounds(&self, fitted: usize, reach: f64) -> Result<(), Rejection> {
         let mut held = [0usize; SECTORS];
@@ -156,8 +134,29 @@ impl Fit {
         }
         Ok(())
     }
+}
 
-    /// Stratum of a row, and the nearest place on a curve.
+impl CurveEnd for Fit {
+    const STRATA: &'static [u8] = &[0, 1, 1, 1, 2, 2, 2, 2];
+    const CELLS: &'static [u8] = &[4, 2, 2];
+    const PARAMETERS: usize = PinchMap::PARAMETERS;
+
+    fn points(&self) -> &[Vector3<f64>] {
+        &self.all
+    }
+
+    fn end(&self) -> Vector3<f64> {
+        self.map.point()
+    }
+
+    fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    fn ep(&self) -> f64 {
+        self.ep
+    }
+
     fn locate(&self, row: usize) -> (u8, Vector3<f64>, u8) {
         let x = self.all[row];
         let [u, v] = self.parameters[row];
@@ -173,26 +172,6 @@ impl Fit {
             (true, false) => (DOUBLE, place, cells),
             (false, true) => (fold(v), place, cells),
             (false, false) => (cell(self.map.off_fold([u, v]), v), place, cells),
-        }
-    }
-
-    fn located(&self, row: usize) -> Located {
-        let (label, place, cells) = self.locate(row);
-        let dimension = match label {
-            POINT => 0,
-            DOUBLE | 2 | 3 => 1,
-            _ => 2,
-        };
-        let offset = (place - self.all[row]).norm();
-        let (place, offset) = match dimension < 2 || offset < WITNESS_REACH * self.ep {
-            true => (place, offset),
-            false => (self.all[row], f64::INFINITY),
-        };
-        Located {
-            dimension,
-            cells,
-            place: place.iter().copied().collect(),
-            offset,
         }
     }
 }
@@ -223,21 +202,7 @@ impl SingularityModel for PinchPoint {
         local: &LocalPoints<'_>,
         rows: &[usize],
     ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
-        let fit = self.fit(local)?;
-        let center = fit.located(local.center);
-        let located = rows.iter().map(|&row| Some(fit.located(row))).collect();
-        let dimensions = [0, 1, 1, 1, 2, 2, 2, 2];
-        let decomposition = Decomposition {
-            strata: dimensions.map(|dimension| Stratum { dimension }).to_vec(),
-            labels: (0..fit.all.len()).map(|row| fit.locate(row).0).collect(),
-            cells_at_curve: vec![4, 2, 2],
-            residual: fit.residual,
-            parameters: PinchMap::PARAMETERS,
-            points: vec![fit.map.point().iter().copied().collect()],
-            center: center.place,
-            center_offset: center.offset,
-        };
-        Ok((decomposition, located))
+        Ok(self.fit(local)?.decomposition(local, rows))
     }
 
     fn name(&self) -> &str {

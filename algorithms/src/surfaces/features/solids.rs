@@ -51,11 +51,7 @@ pub(super) const ALL: &[Feature] = &[
         betti: [1, 0, 3],
         most: 1.0,
         area: |_| 8.0 * PI,
-        place: |r, f| {
-            let side = if r.uniform() < 0.5 { 1.0 } else { -1.0 };
-            let [x, y, z] = direction(r);
-            Some([x + side * (1.0 - f / 2.0), y, z])
-        },
+        place: |r, f| Some(on_two_spheres(r, 1.0 - f / 2.0)),
         spots: |_| vec![[0.0; 3]],
         curve: None,
     },
@@ -64,11 +60,7 @@ pub(super) const ALL: &[Feature] = &[
         betti: [2, 0, 2],
         most: 1.0,
         area: |_| 8.0 * PI,
-        place: |r, f| {
-            let side = if r.uniform() < 0.5 { 1.0 } else { -1.0 };
-            let [x, y, z] = direction(r);
-            Some([x + side * (1.0 + f / 2.0), y, z])
-        },
+        place: |r, f| Some(on_two_spheres(r, 1.0 + f / 2.0)),
         spots: |_| vec![[0.0; 3]],
         curve: None,
     },
@@ -159,6 +151,13 @@ pub(super) const ALL: &[Feature] = &[
 pub(super) fn swap(angle: f64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(angle);
     [sin, cos]
+}
+
+/// A random place of two unit spheres whose centers are `away` from the origin, on either side of it.
+fn on_two_spheres(r: &mut Random, away: f64) -> Spot {
+    let side = if r.uniform() < 0.5 { 1.0 } else { -1.0 };
+    let [x, y, z] = direction(r);
+    [x + side * away, y, z]
 }
 
 /// A random place of the unit sphere.

@@ -1,0 +1,100 @@
+//! What the models of the ends of double curves have in common: when they are believed, and what they say of rows.
+
+use super::patch::off_one_sheet;
+use crosscap_core::{Decomposition, LocalPoints, Located, Rejection, Stratum};
+use nalgebra::Vector3;
+
+/// Greatest share of the points farther than ep from the surface.
+const MOST_ASTRAY: f64 = 0.03;
+/// The surface must be followed this much better than by one quadratic patch.
+const GAIN: f64 = 0.5;
+/// The end lies within this share of the radius.
+pub(super) const REACH: f64 = 0.7;
+/// A point off the curves tells where they are up to this many ep.
+const WITNESS_REACH: f64 = 3.0;
+
+/// Refuses a fit that is not much better than one quadratic patch.
+pub(super) fn gains(residual: f64, points: &[Vector3<f64>], radius: f64) -> Result<(), Rejection> {
+    let simpler = off_one_sheet(points, radius);
+    match residual > GAIN * simpler {
+        true => Err(Rejection::SimplerModelFits { residual, simpler }),
+        false => Ok(()),
+    }
+}
+
+/// Refuses a fit that too many of the points are farther off than ep; `off` are their distances.
+pub(super) fn follows(
+    off: impl ExactSizeIterator<Item = f64>,
+    residual: f64,
+    ep: f64,
+) -> Result<(), Rejection> {
+    let most = MOST_ASTRAY * off.len() as f64;
+    match off.filter(|&d| d > ep).count() as f64 > most {
+        true => Err(Rejection::PoorFit {
+            residual,
+            limit: ep,
+        }),
+        false => Ok(()),
+    }
+}
+
+/// A neighborhood of the end of a double curve, with what was fitted to it.
+pub(super) trait CurveEnd {
+    /// Dimension of the stratum of every label.
+    const STRATA: &'static [u8];
+    /// How many cells meet at the strata that are curves, by label.
+    const CELLS: &'static [u8];
+    /// Numbers that were fitted.
+    const PARAMETERS: usize;
+
+    /// The points.
+    fn points(&self) -> &[Vector3<f64>];
+    /// Where the curve ends.
+    fn end(&self) -> Vector3<f64>;
+    /// Root mean squared distance of the fitted points from the surface.
+    fn residual(&self) -> f64;
+    /// Curve tolerance.
+    fn ep(&self) -> f64;
+    /// Label of a row, the nearest place on a curve, and how many cells meet there.
+    fn locate(&self, row: usize) -> (u8, Vector3<f64>, u8);
+
+    /// What is said of a row: a place on a curve where it is on one or near one.
+    fn located(&self, row: usize) -> Located {
+        let (label, place, cells) = self.locate(row);
+        let dimension = Self::STRATA[usize::from(label)];
+        let own = self.points()[row];
+        let offset = (place - own).norm();
+        let (place, offset) = match dimension < 2 || offset < WITNESS_REACH * self.ep() {
+            true => (place, offset),
+            false => (own, f64::INFINITY),
+        };
+        Located {
+            dimension,
+            cells,
+            place: place.iter().copied().collect(),
+            offset,
+        }
+    }
+
+    /// The decomposition of the neighborhood, and what is said of some of its rows.
+    fn decomposition(
+        &self,
+        local: &LocalPoints<'_>,
+        rows: &[usize],
+    ) -> (Decomposition, Vec<Option<Located>>) {
+        let center = self.located(local.center);
+        let located = rows.iter().map(|&row| Some(self.located(row))).collect();
+        let strata = Self::STRATA.iter();
+        let decomposition = Decomposition {
+            strata: strata.map(|&dimension| Stratum { dimension }).collect(),
+            labels: (0..local.len()).map(|row| self.locate(row).0).collect(),
+            cells_at_curve: Self::CELLS.to_vec(),
+            residual: self.residual(),
+            parameters: Self::PARAMETERS,
+            points: vec![self.end().iter().copied().collect()],
+            center: center.place,
+            center_offset: center.offset,
+        };
+        (decomposition, located)
+    }
+}
