@@ -19,8 +19,9 @@ use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::execute::Execute;
 use crosscap_core::{
     BallDimension, Balls, Chart, ChartTriangle, CompatibilityTest, CurveEdge, Decomposition,
-    DimensionEstimate, Incomplete, LocalPoints, Located, Meeting, Neighbor, Neighborhood,
-    Rejection, StratifiedLandmarks, TriangleRule, Triangulation, TriangulationCounts, Triangulator,
+    DimensionEstimate, Incomplete, Landmark, LocalPoints, Located, Meeting, Neighbor, Neighborhood,
+    Rejection, Row, StratifiedLandmarks, TriangleRule, Triangulation, TriangulationCounts,
+    Triangulator,
 };
 
 const NAME: &str = "the-broken-one";
@@ -525,7 +526,7 @@ impl Stratifier<f64> for Astray {
 }
 
 impl WaistProducer<f64> for Spoiling<'_> {
-    fn waist(&self, extra: &[usize]) -> Result<Stratification<f64>, Error> {
+    fn waist(&self, extra: &[Row]) -> Result<Stratification<f64>, Error> {
         let mut waist = self.usual.waist(extra)?;
         (self.spoil)(&mut waist);
         Ok(waist)
@@ -540,9 +541,10 @@ fn stratifiers() {
             .reconstruct(&sphere())
     };
     assert!(by(|_| ()).unwrap().is_verified());
+    const FIFTH: Landmark = Landmark::new(5);
     let law = "answer: every landmark stands for a row";
-    names(by(|s| s.rows[5] = s.rows[4]), law, 1200);
-    names(by(|s| s.rows[5] = 1200), law, 1200);
+    names(by(|s| s.rows[FIFTH] = s.rows[Landmark::new(4)]), law, 1200);
+    names(by(|s| s.rows[FIFTH] = Row::new(1200)), law, 1200);
     names(by(|s| s.rows.truncate(5)), law, 1200);
 }
 

@@ -19,6 +19,7 @@
 //! | triangles on landmarks | [`Triangulator`] |
 //! | the result | [`Complex`], [`Mesh`] |
 //! | many jobs at once | [`execute`] |
+//! | numbers that name things | [`Row`], [`Landmark`], [`Table`] |
 
 mod balls;
 mod chart;
@@ -29,6 +30,7 @@ mod dimension;
 mod distances;
 mod error;
 pub mod execute;
+mod ids;
 mod landmarks;
 #[cfg(any(test, feature = "laws"))]
 pub mod laws;
@@ -49,6 +51,7 @@ pub use complex::{Complex, CurveEdge, Mesh};
 pub use dimension::{DimensionEstimate, DimensionEstimator};
 pub use distances::SparseDistances;
 pub use error::Error;
+pub use ids::{Id, Landmark, Row, Table};
 pub use landmarks::LandmarkSelector;
 pub use link::{Link, LinkKind};
 pub use metric::MetricSpace;

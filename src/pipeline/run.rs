@@ -19,7 +19,9 @@ use crosscap_algorithms::stratify::{
     Analysis, AnalysisOptions, Analyzer, ChartSpace, Ground, StratifyOptions,
 };
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{DimensionEstimator, Error, LocalChart, Mesh, MetricSpace, PointCloud};
+use crosscap_core::{
+    DimensionEstimator, Error, LocalChart, Mesh, MetricSpace, PointCloud, Row, Table,
+};
 
 /// What a reconstruction is made of.
 pub(crate) struct Input<'i> {
@@ -32,7 +34,7 @@ pub(crate) struct Input<'i> {
 /// A cloud ready for the stages, with what serves its metrics.
 pub(super) struct Prepared<'g> {
     pub(super) rows: Rows,
-    boundary: Vec<usize>,
+    boundary: Vec<Row>,
     pub(super) engines: Engines,
     pub(super) given: Option<Space<'g, f64>>,
 }
@@ -264,7 +266,7 @@ fn radii(
     space: &Space<'_, f64>,
     estimator: &dyn DimensionEstimator<Scalar = f64>,
     threads: &Threads,
-) -> Result<Option<Vec<f64>>, Error> {
+) -> Result<Option<Table<Row, f64>>, Error> {
     let around = Surroundings {
         oracle: space.oracle(),
         metric: space.metric(),
@@ -272,7 +274,8 @@ fn radii(
         execute: threads,
     };
     let of = |policy: &dyn NeighborhoodPolicy<f64>| {
-        Ok(Some(PolicyOracle::new(policy, &around)?.into_radii()))
+        let radii = PolicyOracle::new(policy, &around)?.into_radii();
+        Ok(Some(radii.into()))
     };
     match parameters.spaces.neighborhoods {
         // Nothing is looked for in neighborhoods.

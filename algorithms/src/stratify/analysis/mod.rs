@@ -18,7 +18,9 @@ use crate::audit;
 use crate::execute::{self, Execute};
 use crate::space::Space;
 use crate::tuning::Tuning;
-use crosscap_core::{BallDimension, DimensionEstimator, Error, Radii, Scalar, SingularityModel};
+use crosscap_core::{
+    BallDimension, DimensionEstimator, Error, Radii, Row, Scalar, SingularityModel, Table,
+};
 use explain::{Kind, Verdict};
 use groups::Asked;
 
@@ -29,23 +31,23 @@ pub struct AnalysisOptions {
     pub eps: f64,
     /// A radius for every point instead (strict), unit of the data: see
     /// [`NeighborhoodPolicy`](crate::neighborhood::NeighborhoodPolicy).
-    pub radii: Option<Vec<f64>>,
+    pub radii: Option<Table<Row, f64>>,
     /// Take every point as 2-dimensional and look for no curve.
     pub surface: bool,
     /// Rows that lie on the boundary.
-    pub boundary: Vec<usize>,
+    pub boundary: Vec<Row>,
 }
 
 impl AnalysisOptions {
     /// Radius of the neighborhood of a row.
-    fn radius(&self, row: usize) -> f64 {
+    fn radius(&self, row: Row) -> f64 {
         self.radii.as_ref().map_or(self.eps, |radii| radii[row])
     }
 
     /// Radii of all neighborhoods.
     fn all_radii(&self) -> Radii<'_> {
         match &self.radii {
-            Some(radii) => Radii::Each(radii),
+            Some(radii) => Radii::Each(radii.as_slice()),
             None => Radii::Same(self.eps),
         }
     }
@@ -72,12 +74,12 @@ impl AnalysisOptions {
 ///
 /// # Errors
 /// [`Error::Index`] for a row out of range.
-pub(super) fn marked(rows: &[usize], points: usize) -> Result<Vec<bool>, Error> {
-    let mut boundary = vec![false; points];
+pub(super) fn marked(rows: &[Row], points: usize) -> Result<Table<Row, bool>, Error> {
+    let mut boundary = Table::filled(points, false);
     for &row in rows {
         *boundary.get_mut(row).ok_or(Error::Index {
             what: "boundary row",
-            index: row,
+            index: row.index(),
             limit: points,
         })? = true;
     }
@@ -101,10 +103,10 @@ pub struct Analyzer<'a, S: Scalar> {
 /// What the analysis found out about every point.
 #[derive(Clone, Debug)]
 pub struct Analysis {
-    pub(super) sites: Vec<Site>,
-    pub(super) dimensions: Vec<u8>,
+    pub(super) sites: Table<Row, Site>,
+    pub(super) dimensions: Table<Row, u8>,
     pub(super) mean_neighbors: f64,
-    pub(super) unexplained: Vec<usize>,
+    pub(super) unexplained: Vec<Row>,
     pub(super) models: Vec<ModelCounts>,
     /// Points near a curve but not on it, with their place on it, by row.
     pub(super) witnesses: Vec<Witness>,
@@ -115,18 +117,18 @@ pub struct Analysis {
 impl Analysis {
     /// So many points, all inside cells: for a method that looks for no curve.
     pub fn of_surface(points: usize) -> Self {
-        Self::of_boundary(&vec![false; points])
+        Self::of_boundary(&Table::filled(points, false))
     }
 
     /// Nothing but what was given: boundary points where they are, all others inside cells.
-    pub(super) fn of_boundary(boundary: &[bool]) -> Self {
+    pub(super) fn of_boundary(boundary: &Table<Row, bool>) -> Self {
         let site = |&given: &bool| match given {
             true => Site::On(Box::new(On::GIVEN_BOUNDARY)),
             false => Site::Regular,
         };
         Self {
             sites: boundary.iter().map(site).collect(),
-            dimensions: vec![2; boundary.len()],
+            dimensions: Table::filled(boundary.len(), 2),
             mean_neighbors: 0.0,
             unexplained: Vec::new(),
             models: Vec::new(),
@@ -136,12 +138,12 @@ impl Analysis {
     }
 
     /// Where every point is.
-    pub fn sites(&self) -> &[Site] {
+    pub fn sites(&self) -> &Table<Row, Site> {
         &self.sites
     }
 
     /// Local dimension of every point; 2 throughout where `surface` was set.
-    pub fn dimensions(&self) -> &[u8] {
+    pub fn dimensions(&self) -> &Table<Row, u8> {
         &self.dimensions
     }
 
@@ -156,7 +158,7 @@ impl Analysis {
     }
 
     /// Points whose neighborhood no model explained at any radius, by row.
-    pub fn unexplained(&self) -> &[usize] {
+    pub fn unexplained(&self) -> &[Row] {
         &self.unexplained
     }
 
@@ -172,7 +174,7 @@ impl Analysis {
     }
 
     /// Enters what a point turned out to be.
-    fn take(&mut self, row: usize, verdict: Verdict, boundary: bool) {
+    fn take(&mut self, row: Row, verdict: Verdict, boundary: bool) {
         self.apexes.extend(verdict.apex);
         match verdict.kind {
             Kind::Regular => {}
@@ -244,7 +246,7 @@ impl<S: Scalar> Fitter<'_, S> {
     fn look(
         &self,
         options: &AnalysisOptions,
-        boundary: &[bool],
+        boundary: &Table<Row, bool>,
         out: &mut Analysis,
     ) -> Result<(), Error> {
         let n = boundary.len();
@@ -260,14 +262,13 @@ impl<S: Scalar> Fitter<'_, S> {
             false => self.dimensions(options.all_radii())?,
         };
         let found = execute::map(self.execute, n, Scratch::default, |scratch, i| {
-            let dimension = balls[i].dimension as usize;
-            self.first_look(i, dimension, options, boundary[i], scratch)
+            let (row, dimension) = (Row::new(i), balls[i].dimension as usize);
+            self.first_look(row, dimension, options, boundary[row], scratch)
         });
         let mut total = 0usize;
         let mut asked: Vec<(u8, Asked)> = Vec::new();
-        for (row, verdict) in found.into_iter().enumerate() {
-            let neighbors = balls[row].neighbors as usize;
-            let dimension = balls[row].dimension as u8;
+        for ((row, ball), verdict) in boundary.ids().zip(&balls).zip(found) {
+            let (neighbors, dimension) = (ball.neighbors as usize, ball.dimension as u8);
             total += neighbors;
             out.dimensions[row] = dimension;
             match verdict {
@@ -301,7 +302,7 @@ impl<S: Scalar> Fitter<'_, S> {
         let limit = self.tuning.analysis.unexplained_share * out.sites.len() as f64;
         match out.unexplained.first() {
             Some(&point) if out.unexplained.len() as f64 > limit => Err(Error::Dimension {
-                point,
+                point: point.index(),
                 dimension: out.dimensions[point] as usize,
                 count: out.unexplained.len(),
                 parameter: "eps",
