@@ -49,13 +49,10 @@ impl WaistProducer<f64> for Charts<'_> {
     fn waist(&self, extra: &[Row]) -> Result<Stratification<f64>, Error> {
         let mut rows = self.rows.clone();
         rows.extend(extra.iter().copied().filter(|&row| self.may_add(row)));
-        let count = rows.len() as u32;
-        let apart = |a: u32, b: u32| {
-            let [p, q] = [a, b].map(|k| rows[Landmark::from(k)].index());
-            self.metric.distance(p, q)
-        };
-        let around = |center: u32| {
-            let mut members: Vec<u32> = (0..count).collect();
+        let apart =
+            |a: Landmark, b: Landmark| self.metric.distance(rows[a].index(), rows[b].index());
+        let around = |center: Landmark| {
+            let mut members: Vec<Landmark> = rows.ids().collect();
             // The center itself comes first, at distance 0.
             members.sort_by(|&a, &b| {
                 let order = apart(center, a).total_cmp(&apart(center, b));
@@ -64,9 +61,9 @@ impl WaistProducer<f64> for Charts<'_> {
             members.truncate(self.size);
             CellNeighborhood { center, members }
         };
-        let neighborhoods: Vec<CellNeighborhood> = (0..count).map(around).collect();
+        let neighborhoods: Vec<CellNeighborhood> = rows.ids().map(around).collect();
         let waist = StratifiedLandmarks {
-            strata: vec![2; rows.len()],
+            strata: Table::filled(rows.len(), 2),
             curve_edges: Vec::new(),
             distances: SparseDistances::within(rows.len(), &neighborhoods, apart)?,
             neighborhoods,

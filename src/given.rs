@@ -8,7 +8,7 @@ use crosscap_algorithms::space::Space;
 use crosscap_backends::files::Distances;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{Error, Neighbor, NeighborhoodOracle, SparseDistances};
+use crosscap_core::{Error, Neighbor, NeighborhoodOracle, Row, SparseDistances};
 use serde::Serialize;
 
 /// What became of distances that were the only input.
@@ -162,7 +162,7 @@ impl Pipeline {
 
 /// Shortest paths over the distances that are known.
 fn paths(
-    known: &SparseDistances<f64>,
+    known: &SparseDistances<f64, Row>,
     parameters: &Parameters,
     threads: &Threads,
 ) -> Result<(GeodesicMetric<f64>, Vec<Warning>), Error> {
@@ -191,11 +191,11 @@ fn paths(
 }
 
 /// The known distances as a graph: what is not known is not near.
-pub(crate) struct KnownDistances<'a>(pub(crate) &'a SparseDistances<f64>);
+pub(crate) struct KnownDistances<'a>(pub(crate) &'a SparseDistances<f64, Row>);
 
 impl KnownDistances<'_> {
     fn reach(&self, point: usize) -> f64 {
-        self.0.row(point as u32).map(|x| x.1).fold(0.0, f64::max)
+        self.0.row(Row::new(point)).map(|x| x.1).fold(0.0, f64::max)
     }
 
     fn all(&self, center: usize, out: &mut Vec<Neighbor<f64>>) {
@@ -204,8 +204,8 @@ impl KnownDistances<'_> {
             index: center,
             distance: 0.0,
         });
-        out.extend(self.0.row(center as u32).map(|(j, distance)| Neighbor {
-            index: j as usize,
+        out.extend(self.0.row(Row::new(center)).map(|(j, distance)| Neighbor {
+            index: j.index(),
             distance,
         }));
         out.sort_by(|a, b| {

@@ -462,7 +462,7 @@ struct Lost(fn(&mut Triangulation));
 impl Triangulator<f64> for Lost {
     fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
         let count = waist.strata.len();
-        let open = (0..count as u32).map(|landmark| Incomplete { landmark });
+        let open = waist.strata.ids().map(|landmark| Incomplete { landmark });
         let mut found = Triangulation {
             complex: Complex::new(count, vec![], waist.curve_edges.clone())?,
             dropped: vec![],
@@ -495,7 +495,7 @@ fn triangulators() {
     let edge = by(|t| t.complex.curve_edges.push(CurveEdge::new(0, 1, 4)));
     names(edge, "answer: the curve edges", 1200);
     names(
-        by(|t| t.dropped = vec![3, 2]),
+        by(|t| t.dropped = [3, 2].map(Landmark::new).to_vec()),
         "answer: what was dropped",
         1200,
     );
@@ -872,7 +872,7 @@ fn compatibility_tests() {
     names(by(|_, _| Meeting::Overlap), "reference", 1200);
     // Right but for triangles with large numbers, which no known pair has.
     let late = |a: &ChartTriangle, b: &ChartTriangle| {
-        if a.corners[0] > 20 && b.corners[1] > 40 {
+        if a.corners[0].index() > 20 && b.corners[1].index() > 40 {
             Meeting::Overlap
         } else {
             PlanarPredicate.meeting(a, b)

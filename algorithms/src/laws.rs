@@ -171,7 +171,8 @@ mod tests {
     use crate::certificate::LinkKind;
     use crate::stratify::Stratification;
     use crosscap_core::{
-        CellNeighborhood, Complex, Error, PointCloud, SparseDistances, StratifiedLandmarks,
+        CellNeighborhood, Complex, Error, Landmark, PointCloud, SparseDistances,
+        StratifiedLandmarks, Table,
     };
     use std::sync::Mutex;
 
@@ -219,15 +220,18 @@ mod tests {
                 "independence" => rows.extend(kept.iter()),
                 _ => rows.extend(extra),
             }
-            let members: Vec<u32> = (0..rows.len() as u32).collect();
-            let near = CellNeighborhood { center: 0, members };
+            let members: Vec<Landmark> = (0..rows.len()).map(Landmark::new).collect();
+            let near = CellNeighborhood {
+                center: members[0],
+                members,
+            };
             let waist = StratifiedLandmarks {
-                strata: vec![2; rows.len()],
+                strata: Table::filled(rows.len(), 2),
                 curve_edges: vec![],
                 distances: SparseDistances::within(
                     rows.len(),
                     std::slice::from_ref(&near),
-                    |a, b| f64::from(a + b),
+                    |a, b| (a.index() + b.index()) as f64,
                 )?,
                 neighborhoods: vec![near],
             };

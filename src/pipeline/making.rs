@@ -12,7 +12,7 @@ use crosscap_algorithms::certificate::{
 use crosscap_algorithms::homology::{Homology, homology};
 use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::stratify::{Refinement, Stratification, WaistProducer};
-use crosscap_core::{Error, Landmark, LocalChart, Mesh, PointCloud, Row, Triangulation};
+use crosscap_core::{Error, LocalChart, Mesh, PointCloud, Row, Triangulation};
 
 /// What meshes of one cloud are made from.
 pub(super) struct Making<'m> {
@@ -171,7 +171,7 @@ impl Making<'_> {
             parts, prepared, ..
         } = self;
         let dropped = made.triangulation.dropped.iter();
-        let dropped = dropped.map(|&k| made.waist.rows[Landmark::from(k)]);
+        let dropped = dropped.map(|&k| made.waist.rows[k]);
         let options = CertificateOptions {
             points: Some(&prepared.engines.cloud),
             landmark_separation: Some(parts.parameters.dl),

@@ -48,7 +48,7 @@ pub(super) fn special_points(
     (stratification.points.iter())
         .filter_map(|p| {
             let link = p.link.clone()?;
-            let row = rows[stratification.rows[Landmark::from(p.landmark)]].signed();
+            let row = rows[stratification.rows[p.landmark]].signed();
             let vertex = mesh.point_index.iter().position(|&r| r == row)? as u32;
             Some(SpecialPoint { vertex, link })
         })
@@ -89,8 +89,8 @@ pub(super) fn failures(
         .incomplete
         .iter()
         .map(|open| {
-            let landmark = Landmark::from(open.landmark);
-            let on_curve = stratification.waist.strata[landmark.index()] < 2;
+            let landmark = open.landmark;
+            let on_curve = stratification.waist.strata[landmark] < 2;
             Error::Triangulation {
                 reason: if on_curve {
                     "a cell at a curve could not be filled".into()

@@ -24,7 +24,7 @@ pub(super) fn within_charts<S: Scalar>(
                 expected: "coordinates, or a metric for the charts".into(),
             })?;
             SparseDistances::within(rows.len(), neighborhoods, |a, b| {
-                let [p, q] = [a, b].map(|k| rows[Landmark::from(k)].index());
+                let [p, q] = [a, b].map(|k| rows[k].index());
                 S::of(places.squared_distance(p, q).sqrt())
             })
         }
@@ -39,8 +39,10 @@ pub(super) fn within_charts<S: Scalar>(
 }
 
 /// All pairs of members of the same neighborhood, sorted.
-pub(super) fn pairs<'m>(neighborhoods: impl Iterator<Item = &'m [u32]>) -> Vec<(u32, u32)> {
-    let mut pairs: Vec<(u32, u32)> = Vec::new();
+pub(super) fn pairs<'m>(
+    neighborhoods: impl Iterator<Item = &'m [Landmark]>,
+) -> Vec<(Landmark, Landmark)> {
+    let mut pairs: Vec<(Landmark, Landmark)> = Vec::new();
     for members in neighborhoods {
         for (i, &a) in members.iter().enumerate() {
             pairs.extend(members[..i].iter().map(|&b| (a.min(b), a.max(b))));
@@ -59,28 +61,20 @@ pub(super) fn lengths<S: Scalar>(
     execute: &dyn Execute,
     metric: &dyn MetricSpace<Scalar = S>,
     rows: &Table<Landmark, Row>,
-    pairs: &[(u32, u32)],
+    pairs: &[(Landmark, Landmark)],
 ) -> Result<Vec<S>, Error> {
-    let runs: Vec<&[(u32, u32)]> = pairs.chunk_by(|x, y| x.0 == y.0).collect();
+    let runs: Vec<&[(Landmark, Landmark)]> = pairs.chunk_by(|x, y| x.0 == y.0).collect();
     let lengths = execute::map(execute, runs.len(), Vec::new, |targets, k| {
         targets.clear();
-        targets.extend(
-            runs[k]
-                .iter()
-                .map(|&(_, b)| rows[Landmark::from(b)].index()),
-        );
+        targets.extend(runs[k].iter().map(|&(_, b)| rows[b].index()));
         let mut lengths = Vec::with_capacity(targets.len());
-        metric.distances_to(
-            rows[Landmark::from(runs[k][0].0)].index(),
-            targets,
-            &mut lengths,
-        );
+        metric.distances_to(rows[runs[k][0].0].index(), targets, &mut lengths);
         lengths
     });
     let lengths: Vec<S> = lengths.into_iter().flatten().collect();
     let wrong = |d: &S| !(d.is_finite() && *d >= S::zero());
     if let Some(at) = lengths.iter().position(wrong) {
-        let [p, q] = [pairs[at].0, pairs[at].1].map(|k| rows[Landmark::from(k)].index());
+        let [p, q] = [pairs[at].0, pairs[at].1].map(|k| rows[k].index());
         audit::distance(metric, p, q)?;
     }
     Ok(lengths)
@@ -92,14 +86,14 @@ fn add_moves<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
     strata: &Strata,
     rows: &Table<Landmark, Row>,
-    pairs: &[(u32, u32)],
+    pairs: &[(Landmark, Landmark)],
     lengths: &mut [S],
 ) {
     let (Some(cloud), Some(places)) = (analyzer.space.places(), strata.places()) else {
         return;
     };
     for (length, &(a, b)) in lengths.iter_mut().zip(pairs) {
-        let [p, q] = [a, b].map(|k| rows[Landmark::from(k)]);
+        let [p, q] = [a, b].map(|k| rows[k]);
         if strata.moved(p) > 0.0 || strata.moved(q) > 0.0 {
             let (p, q) = (p.index(), q.index());
             let moved = places.squared_distance(p, q).sqrt();

@@ -5,7 +5,7 @@ use super::curve_ends;
 use super::skeleton::Skeleton;
 use super::strata::Strata;
 use crate::audit;
-use crosscap_core::{Error, Landmark, LandmarkSelector, Row, Scalar, Table};
+use crosscap_core::{Error, LandmarkSelector, Row, Scalar, Table};
 
 /// Landmarks that a selector chooses among the regular points, the skeleton's being taken.
 ///
@@ -48,7 +48,7 @@ fn free_of_edges<S: Scalar>(
     if let Some(places) = strata.places() {
         let mut near = Vec::new();
         for e in skeleton.edges().iter().filter(|e| e.cells > 0) {
-            let [a, b] = e.ends.map(|k| skeleton.rows()[Landmark::from(k)]);
+            let [a, b] = e.landmarks().map(|k| skeleton.rows()[k]);
             let length = places.squared_distance(a.index(), b.index());
             let reach = length.sqrt() + strata.moved(a);
             analyzer

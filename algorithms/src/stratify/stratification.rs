@@ -25,7 +25,7 @@ pub struct StratifyCounts {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PointStratum {
     /// The landmark.
-    pub landmark: u32,
+    pub landmark: Landmark,
     /// Number of curves that end there.
     pub curves: usize,
     /// Number of cells that have it at their rim.
@@ -96,12 +96,12 @@ impl<S: Scalar> Stratification<S> {
             }
         }
         let stray = self.points.iter().find(|p| {
-            let stratum = self.waist.strata.get(p.landmark as usize);
+            let stratum = self.waist.strata.get(p.landmark);
             stratum != Some(&0)
         });
         match stray {
             Some(p) => {
-                let k = Landmark::from(p.landmark);
+                let k = p.landmark;
                 broken(
                     k,
                     format!("a point at landmark {k} of {count}, which is none"),

@@ -130,9 +130,9 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
     fn waist(&self, extra: &[Row]) -> Result<Stratification<S>, Error> {
         let rows = self.rows(extra);
         let on_curves = self.skeleton.rows().len();
-        let mut strata = vec![2u8; rows.len()];
-        strata[..on_curves].fill(1);
-        strata[..self.skeleton.corners()].fill(0);
+        let mut strata = Table::filled(rows.len(), 2);
+        strata.as_mut_slice()[..on_curves].fill(1);
+        strata.as_mut_slice()[..self.skeleton.corners()].fill(0);
         let (neighborhoods, cut_edges) = Neighborhoods {
             analyzer: self.analyzer,
             strata: &self.strata,

@@ -110,11 +110,8 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
             let center = job.landmark;
             let others = members.unwrap_or_default();
             CellNeighborhood {
-                center: center.into(),
-                members: std::iter::once(center)
-                    .chain(others)
-                    .map(u32::from)
-                    .collect(),
+                center,
+                members: std::iter::once(center).chain(others).collect(),
             }
         });
         Ok((all.collect(), cut))

@@ -79,15 +79,15 @@ fn crossing_planes_are_divided_at_their_line() {
             "{x:?}"
         );
     }
-    let on_curve = |k: u32| out.waist.strata[k as usize] == 1;
+    let on_curve = |k: Landmark| out.waist.strata[k] == 1;
     let mut divided = 0;
     for near in &out.waist.neighborhoods {
         assert!(!on_curve(near.center));
-        if analysis.dimensions[out.rows[Landmark::from(near.center)]] != 3 {
+        if analysis.dimensions[out.rows[near.center]] != 3 {
             continue;
         }
         divided += 1;
-        let sheet = |k: u32| cloud.point(out.rows[Landmark::from(k)].index())[2] == 0.0;
+        let sheet = |k: Landmark| cloud.point(out.rows[k].index())[2] == 0.0;
         for &m in &near.members {
             assert!(on_curve(m) || sheet(m) == sheet(near.center));
         }
@@ -138,7 +138,7 @@ fn a_rejected_fit_leaves_the_neighborhood_whole() {
     assert_eq!(analysis.unexplained.len(), analysis.candidates());
     for near in &out.waist.neighborhoods {
         let ball = out.rows.iter().filter(|&&r| {
-            let center = out.rows[Landmark::from(near.center)];
+            let center = out.rows[near.center];
             cloud.squared_distance(r.index(), center.index()).sqrt() < 0.5
         });
         assert_eq!(near.members.len(), ball.count());

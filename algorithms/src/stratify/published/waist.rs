@@ -75,24 +75,25 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
         &self,
         rows: &Table<Landmark, Row>,
         on_curves: usize,
-    ) -> Result<Vec<Vec<u32>>, Error> {
-        let mut landmark_at: Table<Row, Option<u32>> = Table::filled(self.strata.len(), None);
+    ) -> Result<Vec<Vec<Landmark>>, Error> {
+        let mut landmark_at: Table<Row, Option<Landmark>> = Table::filled(self.strata.len(), None);
         for (k, &row) in rows.each() {
-            landmark_at[row] = Some(k.into());
+            landmark_at[row] = Some(k);
         }
         let fitter = match self.method.surface {
             true => None,
             false => Some(self.analyzer.fitter("since planes are fitted in them")?),
         };
         let of = |scratch: &mut Scratch<S>, k: usize| {
-            let own = rows[Landmark::new(k)];
+            let center = Landmark::new(k);
+            let own = rows[center];
             let near = if k < on_curves {
                 self.along_curve(fitter.as_ref(), own, scratch)
             } else {
                 self.in_sheet(fitter.as_ref(), own, scratch)
             };
             let others = near.into_iter().filter(|&row| row != own);
-            std::iter::once(k as u32)
+            std::iter::once(center)
                 .chain(others.filter_map(|row| landmark_at[row]))
                 .collect()
         };
@@ -104,7 +105,7 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
     fn distances(
         &self,
         rows: &Table<Landmark, Row>,
-        all: &[Vec<u32>],
+        all: &[Vec<Landmark>],
     ) -> Result<SparseDistances<S>, Error> {
         let metric = match &self.charts {
             ChartSpace::Places => self.analyzer.space.metric(),
@@ -194,14 +195,12 @@ impl<S: Scalar> WaistProducer<S> for PublishedCut<'_, '_, S> {
         let edges = curve_edges(&all[..on_curves], &distances, self.chart)?;
         let curve_edges: Vec<CurveEdge> = (edges.into_iter())
             .map(|(a, b)| {
-                let bounds = [a, b]
-                    .iter()
-                    .all(|&k| self.is_given(rows[Landmark::from(k)]));
-                CurveEdge::new(a, b, if bounds { 1 } else { 4 })
+                let bounds = [a, b].iter().all(|&k| self.is_given(rows[k]));
+                CurveEdge::new(a.into(), b.into(), if bounds { 1 } else { 4 })
             })
             .collect();
-        let mut strata = vec![2u8; rows.len()];
-        strata[..on_curves].fill(1);
+        let mut strata = Table::filled(rows.len(), 2);
+        strata.as_mut_slice()[..on_curves].fill(1);
         let neighborhoods: Vec<CellNeighborhood> = (all.into_iter().skip(on_curves))
             .map(|members| CellNeighborhood {
                 center: members[0],
@@ -221,12 +220,12 @@ impl<S: Scalar> WaistProducer<S> for PublishedCut<'_, '_, S> {
 /// Joins every curve landmark to its neighbors in its 1-D chart, one landmark after another; pairs in
 /// increasing order. The center is the first of each neighborhood.
 fn curve_edges<S: Scalar>(
-    neighborhoods: &[Vec<u32>],
+    neighborhoods: &[Vec<Landmark>],
     distances: &SparseDistances<S>,
     chart: &dyn LocalChart,
-) -> Result<Vec<(u32, u32)>, Error> {
-    let mut joined: Vec<Vec<u32>> = vec![Vec::new(); neighborhoods.len()];
-    for (center, members) in neighborhoods.iter().enumerate() {
+) -> Result<Vec<(Landmark, Landmark)>, Error> {
+    let mut joined: Table<Landmark, Vec<Landmark>> = Table::filled(neighborhoods.len(), Vec::new());
+    for (center, members) in joined.ids().zip(neighborhoods) {
         let count = members.len();
         if count < 2 {
             continue;
@@ -246,7 +245,7 @@ fn curve_edges<S: Scalar>(
             return Err(Error::Law {
                 plugin: chart.name().into(),
                 law: "finite distances give finite coordinates",
-                point: center,
+                point: center.index(),
                 detail: format!("{} coordinates for {count} points", places.len()),
             });
         }
@@ -259,14 +258,13 @@ fn curve_edges<S: Scalar>(
             let next = beyond().min_by(|&a, &b| ahead(a).total_cmp(&ahead(b)).then(a.cmp(&b)));
             if let Some(k) = next {
                 joined[center].push(members[k]);
-                joined[members[k] as usize].push(center as u32);
+                joined[members[k]].push(center);
             }
         }
     }
-    let mut edges: Vec<(u32, u32)> = joined
-        .iter()
-        .enumerate()
-        .flat_map(|(a, ends)| ends.iter().map(move |&b| (a as u32, b)))
+    let mut edges: Vec<(Landmark, Landmark)> = joined
+        .each()
+        .flat_map(|(a, ends)| ends.iter().map(move |&b| (a, b)))
         .filter(|&(a, b)| a < b)
         .collect();
     edges.sort_unstable();

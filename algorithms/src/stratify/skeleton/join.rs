@@ -8,8 +8,8 @@ impl Skeleton {
     /// pairs first: where the points of a curve have a gap.
     pub(super) fn join_free_ends<S: Scalar>(&mut self, ground: &Ground<'_, '_, S>) {
         let mut degree: Table<Landmark, u32> = Table::filled(self.rows.len(), 0);
-        for end in self.edges.iter().flat_map(|e| e.ends) {
-            degree[Landmark::from(end)] += 1;
+        for end in self.edges.iter().flat_map(CurveEdge::landmarks) {
+            degree[end] += 1;
         }
         let cells = &self.cells;
         // Curves of two cells are folds, which fade out.
@@ -20,7 +20,7 @@ impl Skeleton {
         let mut pairs = Vec::new();
         for (x, &a) in free.iter().enumerate() {
             for &b in &free[..x] {
-                let joined = self.edges.iter().any(|e| e.ends == [b.into(), a.into()]);
+                let joined = self.edges.iter().any(|e| e.landmarks() == [b, a]);
                 let d = ground.distance(self.rows[a], self.rows[b]);
                 if cells[a] == cells[b] && d <= reach && !joined {
                     pairs.push((d, b, a));

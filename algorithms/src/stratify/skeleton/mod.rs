@@ -165,7 +165,7 @@ impl Skeleton {
                 let landmark = self.corner_rows().iter().position(|&c| c == r.row)?;
                 let count = |d| r.fit.strata.iter().filter(|s| s.dimension == d).count();
                 Some(PointStratum {
-                    landmark: landmark as u32,
+                    landmark: Landmark::new(landmark),
                     curves: count(1),
                     cells: count(2),
                     link: (strata.sites()[r.row].on()?.fit)
