@@ -1,6 +1,6 @@
 //! Reconstruction from distances alone.
 
-use crate::pipeline::{Input, Outcome, Parameters, Pipeline};
+use crate::pipeline::{GivenSpace, Input, Outcome, Parameters, Pipeline};
 use crate::spaces::Warning;
 use crosscap_algorithms::metric::{BruteForceOracle, GivenDistances};
 use crosscap_algorithms::scaling::{Scaled, picture_of_metric, scale_metric, scale_patches};
@@ -9,20 +9,6 @@ use crosscap_backends::files::Distances;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{Error, Neighbor, NeighborhoodOracle, Row, SparseDistances};
-use serde::Serialize;
-
-/// What became of distances that were the only input.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct GivenSpace {
-    /// Dimension of the places.
-    pub dimension: usize,
-    /// Largest difference of a known distance and that of the places, unit of the data.
-    pub deviation: f64,
-    /// Whether the places are as good as coordinates: the deviation is at most a hundredth of dl.
-    /// Otherwise they are a picture, and no distance was taken from them.
-    pub exact: bool,
-}
 
 /// Places that deviate at most this share of dl from the distances stand for the points.
 const EXACT: f64 = 0.01;

@@ -3,20 +3,8 @@
 //! Whatever produces this type can be triangulated, whatever triangulates it can be
 //! swapped. It holds no coordinates: a laboratory that measures distances can fill it.
 
-use crate::{CurveEdge, Error, Landmark, Scalar, SparseDistances, Table};
+use crate::{CellNeighborhood, CurveEdge, Error, Landmark, Scalar, SparseDistances, Table};
 use serde::{Deserialize, Serialize};
-
-/// What lies around one landmark inside one cell.
-///
-/// A landmark on a 2-stratum has one; a landmark on a curve has one for each cell that meets there.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct CellNeighborhood {
-    /// The landmark.
-    pub center: Landmark,
-    /// The landmarks of the cell near it, and those on the curves at the rim of the cell;
-    /// the center is the first, then by increasing distance.
-    pub members: Vec<Landmark>,
-}
 
 /// Stratified landmark neighborhoods with sparse distances: all that a triangulator knows.
 ///

@@ -1,8 +1,8 @@
 //! From waists to a mesh with a verdict, and again with more landmarks where that is what it lacks.
 
 use super::mesh::{at_input_row, mesh_of, special_points};
+use super::prepared::Prepared;
 use super::progress::Progress;
-use super::run::Prepared;
 use super::{Parts, Stage};
 use crate::spaces::MetricName;
 use crosscap_algorithms::certificate::{

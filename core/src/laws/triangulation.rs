@@ -1,6 +1,6 @@
 //! Laws of [`Triangulator`].
 
-use super::settings::{Outcome, ensure};
+use super::trial::{Outcome, ensure};
 use super::{Failures, Findings, Law, Settings};
 use crate::{
     CellNeighborhood, Landmark, PointCloud, SparseDistances, StratifiedLandmarks, Table,

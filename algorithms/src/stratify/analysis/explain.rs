@@ -2,9 +2,9 @@
 
 use super::competition::{Contender, Rules};
 use super::fitter::{Fitter, Scratch, View};
-use super::{AnalysisOptions, StratumKind};
+use super::options::AnalysisOptions;
 use crate::singularity::OneSheet;
-use crate::stratify::site::{FitUsed, On, Witness};
+use crate::stratify::site::{FitUsed, On, StratumKind, Witness};
 use crosscap_core::{Located, Neighbor, Row, Scalar, SingularityModel, squared_distance};
 
 /// What one point turned out to be.

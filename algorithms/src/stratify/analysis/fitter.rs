@@ -1,6 +1,6 @@
 //! Balls of the space with the coordinates that models are fitted in.
 
-use super::Analyzer;
+use super::analyzer::Analyzer;
 use super::ledger::{Ledger, ModelCounts};
 use crate::audit::Faults;
 use crate::execute::Execute;

@@ -1,9 +1,9 @@
 //! Many points explained by few fits: the fit of a neighborhood says for all points near its
 //! center what a fit of their own would say.
 
-use super::AnalysisOptions;
 use super::explain::Verdict;
 use super::fitter::{Fitter, Scratch};
+use super::options::AnalysisOptions;
 use crate::execute;
 use crosscap_core::{Row, Scalar, Table};
 

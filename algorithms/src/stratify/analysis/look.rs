@@ -3,8 +3,10 @@
 use super::competition::Rules;
 use super::explain::{Kind, Verdict};
 use super::fitter::{Fitter, Scratch, View};
+use super::found::Analysis;
 use super::groups::Asked;
-use super::{Analysis, AnalysisOptions, StratumKind};
+use super::options::AnalysisOptions;
+use crate::stratify::site::StratumKind;
 use crosscap_core::{Row, Scalar, Table};
 
 impl<S: Scalar> Fitter<'_, S> {
