@@ -3,10 +3,10 @@
 use super::curve_end::{self, CurveEnd, REACH};
 use super::flats::Flat;
 use super::patch::PATCH_POINTS;
+use super::plane_pair::PlanePair;
 use super::rim::Rim;
 use super::sheets::Sheets;
 use super::tolerance::{Tolerance, at_least, vectors};
-use super::two_planes::PlanePair;
 use crosscap_core::{
     Decomposition, Error, Link, LinkKind, LocalPoints, Located, Rejection, SingularityModel,
 };
