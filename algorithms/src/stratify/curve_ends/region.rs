@@ -3,13 +3,13 @@
 use super::Answer;
 use crate::stratify::site::On;
 use crate::stratify::strata::Strata;
-use crosscap_core::{Decomposition, PointCloud, Row, Scalar, squared_distance};
+use crosscap_core::{Decomposition, Label, PointCloud, Row, Scalar, squared_distance};
 
 /// A point at which a curve ends, with the points about it.
 #[derive(Clone, Debug)]
 pub(in crate::stratify) struct EndRegion {
     /// Rows of the region with their labels, by row.
-    pub(in crate::stratify) labels: Vec<(Row, u8)>,
+    pub(in crate::stratify) labels: Vec<(Row, Label)>,
     /// The strata, without the labels.
     pub(in crate::stratify) fit: Decomposition,
     /// Place of the point.
@@ -29,7 +29,7 @@ pub(in crate::stratify) struct Settled {
 
 impl EndRegion {
     /// The label of a row.
-    pub(in crate::stratify) fn label(&self, row: Row) -> Option<u8> {
+    pub(in crate::stratify) fn label(&self, row: Row) -> Option<Label> {
         let at = self.labels.binary_search_by_key(&row, |x| x.0).ok()?;
         Some(self.labels[at].1)
     }
@@ -40,8 +40,8 @@ impl EndRegion {
     }
 
     /// Whether a label names a cell.
-    pub(super) fn is_cell(&self, label: u8) -> bool {
-        self.fit.strata[usize::from(label)].dimension == 2
+    pub(super) fn is_cell(&self, label: Label) -> bool {
+        self.fit.is_of(label, 2)
     }
 
     /// How far a place is from the point.
@@ -98,7 +98,7 @@ pub(in crate::stratify) fn innermost(strata: &Strata, within: f64) -> Vec<Row> {
             let squares = squares.map(|c| places.squared_distance(row.index(), c.index()));
             squares.fold(f64::INFINITY, f64::min)
         };
-        for label in (0..region.fit.strata.len() as u8).filter(|&l| region.is_cell(l)) {
+        for label in region.fit.labels_of(2) {
             let own = region.labels.iter().filter(|x| x.1 == label);
             let near = own.map(|x| x.0).filter(|&row| {
                 strata.is_regular(row) && region.distance(places.point(row.index())) < within
@@ -137,7 +137,7 @@ mod tests {
             .map(Row::new)
             .filter(|&r| region.far(cloud, r) < reach)
             .collect();
-        region.labels = rows.iter().map(|&r| (r, 0)).collect();
+        region.labels = rows.iter().map(|&r| (r, Label::new(0))).collect();
         let settled = |&row: &Row| Settled {
             row,
             on: None,
