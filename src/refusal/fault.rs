@@ -32,6 +32,10 @@ pub enum FaultKind {
     Unconfirmed,
     /// The surface ends where nothing was found that ends.
     Ends,
+    /// The mesh covers places that the points leave empty, more than chance explains.
+    Gap,
+    /// Two sheets of points are one in the mesh.
+    Merged,
     /// Coordinates are rounded to a step that is not small against the spacing of the points.
     Precision,
     /// Nothing is seen in the points themselves: the landmarks or the charts failed.
@@ -74,7 +78,7 @@ impl Fault {
     pub const ROWS: usize = 60;
 }
 
-/// The faults of an outcome that is not handed over, those of most places first.
+/// The faults of an outcome that is not handed over: those with a known cause first, and of these those of most places.
 pub(super) fn faults(
     outcome: &Result<Outcome, Error>,
     doubt: Option<&Doubt>,
@@ -112,9 +116,11 @@ pub(super) fn faults(
             }
         }
     }
+    // A star that stays open says nothing where something else says why.
     faults.sort_by_key(|fault| {
         (
             !fault.kind.is_of_the_whole(),
+            fault.kind == FaultKind::Unresolved,
             std::cmp::Reverse(fault.count),
         )
     });
@@ -128,7 +134,10 @@ fn judged(trouble: &Trouble, oracle: Option<&EuclideanOracle<f64>>) -> Fault {
         .zip(oracle)
         .and_then(|(row, oracle)| Surroundings::of(oracle, row));
     let (kind, measure) = match (trouble.kind, around.map(|a| (a, a.look()))) {
-        (Some(FaultKind::TooFewPoints), _) => (FaultKind::TooFewPoints, trouble.measure),
+        (Some(kind @ (FaultKind::TooFewPoints | FaultKind::Gap | FaultKind::Merged)), _) => {
+            (kind, trouble.measure)
+        }
+        (_, Some((_, Look::Alone))) => (FaultKind::Outliers, trouble.measure),
         (_, Some((a, Look::Bent))) => (FaultKind::Curvature, Some(a.wanted())),
         (_, Some((a, Look::Noisy))) => (FaultKind::Noise, Some(a.thickness / a.spacing)),
         (_, Some((a, Look::Solid))) => (FaultKind::Dimension, Some(a.growth)),
@@ -174,6 +183,8 @@ impl FaultKind {
             Self::TwoReadings => "the points do not decide",
             Self::Unconfirmed => "what was found was not found again",
             Self::Ends => "the mesh ends where nothing was found that ends",
+            Self::Gap => "the mesh covers gaps of the points",
+            Self::Merged => "two sheets of points are one in the mesh",
             Self::Precision => {
                 "coordinates are rounded to a step that is not small against the spacing"
             }

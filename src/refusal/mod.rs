@@ -10,6 +10,9 @@ mod fault;
 mod places;
 mod surroundings;
 
+#[cfg(test)]
+mod tests;
+
 pub use advice::Advice;
 pub use fault::{Fault, FaultKind, Spot};
 pub use surroundings::Surroundings;
@@ -23,7 +26,7 @@ use std::fmt;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Refusal {
-    /// What went wrong, one entry a kind, those of most places first.
+    /// What went wrong, one entry a kind: those with a known cause first, and of these those of most places.
     pub faults: Vec<Fault>,
     /// The best thing to do.
     pub advice: Advice,
@@ -42,7 +45,7 @@ impl Refusal {
     ) -> Self {
         let faults = fault::faults(&outcome, doubt, points);
         Self {
-            advice: Advice::on(&faults, &outcome),
+            advice: Advice::on(&faults, &outcome, points.map(PointCloud::len)),
             faults,
             attempts: Vec::new(),
             outcome,
