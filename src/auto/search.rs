@@ -252,10 +252,12 @@ impl Progress<'_> {
         Ok(symptom)
     }
 
-    /// Whether another attempt may begin.
-    fn may_go_on(&self) -> bool {
+    /// Whether another attempt may begin: the last one is kept to confirm what has `passed`, as nothing is handed over
+    /// without.
+    fn may_go_on(&self, passed: bool) -> bool {
         let in_time = |limit: Duration| self.began.elapsed() < limit;
-        self.attempts.len() < self.auto.tries && self.auto.time_limit.is_none_or(in_time)
+        let ends = self.auto.tries - usize::from(!passed);
+        self.attempts.len() < ends && self.auto.time_limit.is_none_or(in_time)
     }
 
     /// Other landmarks for the attempt that came farthest, where it nearly passed and they were not tried so often yet.
@@ -322,7 +324,7 @@ impl Progress<'_> {
         };
         let mut passed: Option<(Topology, Parameters)> = None;
         let mut confirmations = 0;
-        while self.may_go_on() {
+        while self.may_go_on(passed.is_some()) {
             confirmations += usize::from(passed.is_some());
             let next = match &passed {
                 Some((_, parameters)) => other_landmarks(parameters, &self.pinned, confirmations)

@@ -42,7 +42,7 @@ const SHORT: &str = "Examples:
 /// Fewest points: what one neighborhood needs.
 const LEAST_POINTS: usize = 8;
 /// Attempts with parameters of the program's choice before they are advised.
-const TRIES_FOR_ADVICE: usize = 2;
+const TRIES_FOR_ADVICE: usize = 3;
 
 /// Reconstruct a surface from points: triangulate, check, write
 #[derive(Args, Debug)]
