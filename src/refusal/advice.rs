@@ -57,13 +57,15 @@ const LEAST_INCREASE: f64 = 1.5;
 
 impl Advice {
     /// What to do about faults, by the one of most places.
-    /// Of so many `points`, where they are known.
+    /// Of a run with these parameters on so many `points`, where they are known.
     pub(super) fn on(
         faults: &[Fault],
         outcome: &Result<Outcome, Error>,
         points: Option<usize>,
+        parameters: Option<&Parameters>,
     ) -> Self {
         let report = outcome.as_ref().ok().map(|outcome| &outcome.report);
+        let parameters = parameters.or(report.map(|report| &report.parameters));
         let Some(first) = faults.first() else {
             return Self::MoreTries;
         };
@@ -76,11 +78,11 @@ impl Advice {
             FaultKind::TwoReadings => more(2.0),
             FaultKind::Precision => Self::MoreDigits,
             FaultKind::Noise => Self::LessNoise {
-                dl: report.map(|report| report.parameters.dl),
+                dl: parameters.map(|run| run.dl),
             },
             FaultKind::Dimension => Self::FewerDimensions,
-            FaultKind::Unclaimed => match report {
-                Some(report) if report.parameters.models != ModelName::AUTO => Self::AllModels,
+            FaultKind::Unclaimed => match parameters {
+                Some(run) if run.models != ModelName::AUTO => Self::AllModels,
                 _ => Self::Model,
             },
             FaultKind::Outliers => Self::LeaveOut {

@@ -139,16 +139,20 @@ fn neighborhoods_of_too_few_points_are_told_how_many_would_do() {
 
 #[test]
 fn a_crossing_that_no_asked_model_claims_is_claimed_by_all_together() {
-    let cloud = sample("double_bubble", 3000);
-    let two = Parameters {
-        models: vec![ModelName::TwoPlanes],
-        ..auto(0.44, 0.22)
-    };
-    let refusal = refused(&cloud, two, FaultKind::Unclaimed);
-    assert!(matches!(refusal.advice, Advice::AllModels), "{refusal}");
+    let cloud = sample("two_spheres", 2500);
     let pinned = Pinned {
-        models: Some(ModelName::AUTO.to_vec()),
+        eps: Some(0.5),
+        dl: Some(0.25),
+        models: Some(vec![ModelName::Boundary]),
         ..Pinned::default()
     };
-    assert_eq!(verified(&cloud, pinned), [1, 0, 2]);
+    let search = Auto::new(pinned.clone()).reconstruct(&cloud).unwrap();
+    let refusal = search.into_verified(Some(&cloud)).unwrap_err();
+    assert_eq!(refusal.faults[0].kind, FaultKind::Unclaimed, "{refusal}");
+    assert!(matches!(refusal.advice, Advice::AllModels), "{refusal}");
+    let all = Pinned {
+        models: Some(ModelName::AUTO.to_vec()),
+        ..pinned
+    };
+    assert_eq!(verified(&cloud, all), [1, 0, 3]);
 }
