@@ -73,6 +73,10 @@ impl Advice {
             let count = points.or(report.map(|report| report.points));
             Self::MorePoints((count.unwrap_or(0) as f64 * times.max(LEAST_INCREASE)) as usize)
         };
+        let meets = matches!(first.kind, FaultKind::Unclaimed | FaultKind::Dimension);
+        if meets && parameters.is_some_and(|run| run.models != ModelName::AUTO) {
+            return Self::AllModels;
+        }
         match first.kind {
             FaultKind::Curvature | FaultKind::TooFewPoints => more(first.measure.unwrap_or(2.0)),
             FaultKind::TwoReadings => more(2.0),
@@ -81,10 +85,7 @@ impl Advice {
                 dl: parameters.map(|run| run.dl),
             },
             FaultKind::Dimension => Self::FewerDimensions,
-            FaultKind::Unclaimed => match parameters {
-                Some(run) if run.models != ModelName::AUTO => Self::AllModels,
-                _ => Self::Model,
-            },
+            FaultKind::Unclaimed => Self::Model,
             FaultKind::Outliers => Self::LeaveOut {
                 rows: first.worst.iter().filter_map(|spot| spot.row).collect(),
             },
