@@ -7,6 +7,7 @@
 
 mod advice;
 mod fault;
+mod kind;
 mod places;
 mod surroundings;
 
@@ -14,7 +15,8 @@ mod surroundings;
 mod tests;
 
 pub use advice::Advice;
-pub use fault::{Fault, FaultKind, Spot};
+pub use fault::{Fault, Spot};
+pub use kind::FaultKind;
 pub use surroundings::Surroundings;
 
 use crate::auto::{Attempt, Doubt, Search};

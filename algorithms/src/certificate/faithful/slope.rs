@@ -71,11 +71,12 @@ impl Search<'_> {
             ..Flat::default()
         };
         let mut place = vec![0.0; self.mesh.vertices.dimension()];
+        let finest = self.finest();
         for t in region {
             let shape = Shape::new(corners(self.mesh, t));
             shape.cut(&mut place, &mut |tile, place| {
                 let scale = tile.scale();
-                if shape.longest * scale > TILE * hole.spacing {
+                if scale > finest && shape.longest * scale > TILE * hole.spacing {
                     return Cut::Further;
                 }
                 let part = (
