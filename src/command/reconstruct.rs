@@ -11,6 +11,7 @@ use super::points::PointArguments;
 use super::terminal::{Progress, complain, say};
 use super::{choice, output, overlay, picture, refused, repeat};
 use clap::Args;
+use crosscap::auto::USUAL_TRIES;
 use crosscap::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap::{Advice, Auto, Pinned, Refusal};
 use crosscap_backends::files::{
@@ -82,7 +83,7 @@ pub struct Reconstruct {
     /// Attempts at most, where parameters are left to the program
     ///
     /// A mesh that passes after others have failed counts only when another attempt, with other landmarks, agrees.
-    #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "N", default_value_t = USUAL_TRIES as u16, value_parser = clap::value_parser!(u16).range(1..=1000))]
     tries: u16,
 
     /// Seconds after which no further attempt begins
