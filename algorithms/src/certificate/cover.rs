@@ -139,37 +139,20 @@ pub(super) fn check(
     let values: Vec<f64> = (heights.zip(rows))
         .map(|(h, &row)| h / at(row as usize))
         .collect();
-    let limit = |i: usize| {
-        let ends = feet.on_boundary[i] || feet.items[i] as usize >= count;
-        let usual = if ends {
-            limits.points_to_mesh
-        } else {
-            limits.points_above_mesh
-        };
-        usual + 4.0 * options.noise / at(feet.rows[i] as usize)
-    };
-    let far: Vec<usize> = (0..feet.len())
-        .filter(|&i| !within(values[i], limit(i)))
-        .collect();
-    let beyond = |&i: &usize| values[i] - limit(i);
-    let worst = far
-        .iter()
-        .copied()
-        .max_by(|a, b| beyond(a).total_cmp(&beyond(b)));
-    let worst = worst.map(|i| (values[i], limit(i)));
-    let far = far
-        .into_iter()
-        .map(|i| Place::Point(feet.rows[i] as usize))
-        .collect();
+    let limit = |i: usize| limits.points_to_mesh + 4.0 * options.noise / at(feet.rows[i] as usize);
+    let far = (0..feet.len()).filter(|&i| !within(values[i], limit(i)));
+    let far = far.map(|i| Place::Point(feet.rows[i] as usize)).collect();
     let distances = Distances::of(values);
     report.violations.extend(
         Violation::at(ViolationKind::UncoveredPoints, far, |p| match p {
             Place::Point(p) => points.point(p).to_vec(),
             _ => Vec::new(),
         })
-        .map(|v| match worst {
-            Some((value, limit)) => v.measured(value, limit),
-            None => v,
+        .map(|v| {
+            v.measured(
+                distances.max,
+                limits.points_to_mesh + 4.0 * options.noise / separation,
+            )
         }),
     );
     report.points_to_mesh = Some(distances);

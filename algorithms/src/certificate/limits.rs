@@ -35,9 +35,6 @@ pub struct Limits {
     /// than dl from a landmark, and a triangulated neighborhood is nearer than that; the middle
     /// of a missing star of triangles is about dl away.
     pub points_to_mesh: f64,
-    /// The same for a point whose nearest place is on a triangle and not where the mesh ends: at a crease the surface between the points is
-    /// further from the mesh than any of them.
-    pub points_above_mesh: f64,
     /// Greatest distance of a place of the mesh to the input points, in dl, beyond the
     /// estimated gap of the points.
     pub mesh_to_points: f64,
@@ -70,7 +67,6 @@ impl Default for Limits {
             zero_area: 1e-7,
             min_angle: 0.1,
             points_to_mesh: 0.75,
-            points_above_mesh: 0.65,
             mesh_to_points: 0.5,
             off_plane: 0.7,
             unused_landmarks: 0.01,

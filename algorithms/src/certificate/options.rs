@@ -67,7 +67,6 @@ impl CertificateOptions<'_> {
             ("zero_area", l.zero_area),
             ("min_angle", l.min_angle),
             ("points_to_mesh", l.points_to_mesh),
-            ("points_above_mesh", l.points_above_mesh),
             ("mesh_to_points", l.mesh_to_points),
             ("off_plane", l.off_plane),
             ("unused_landmarks", l.unused_landmarks),
