@@ -26,6 +26,7 @@ pub use rounded::Rounded;
 pub use search::{Choice, Doubt, Search};
 
 use crate::pipeline::{Parameters, Pipeline};
+use crosscap_algorithms::tuning::PreparationTuning;
 use crosscap_backends::files::Distances;
 use crosscap_core::{Error, PointCloud};
 use std::time::Duration;
@@ -47,6 +48,7 @@ pub struct Auto {
     pinned: Pinned,
     tries: usize,
     time_limit: Option<Duration>,
+    preparation: PreparationTuning,
 }
 
 /// Attempts at most, where nothing is said.
@@ -65,6 +67,7 @@ impl Auto {
             pinned,
             tries: USUAL_TRIES,
             time_limit: None,
+            preparation: PreparationTuning::MEASURED,
         }
     }
 
@@ -89,6 +92,12 @@ impl Auto {
     /// No further attempt begins after this time. An attempt that has begun is finished.
     pub fn time_limit(mut self, limit: Duration) -> Self {
         self.time_limit = Some(limit);
+        self
+    }
+
+    /// The numbers that decide which points are outliers, and where points that scatter are moved.
+    pub fn preparation(mut self, tuning: PreparationTuning) -> Self {
+        self.preparation = tuning;
         self
     }
 

@@ -6,6 +6,7 @@ use super::input::Input;
 use crate::pipeline::{Outcome, Parameters, Pipeline, distinct_rows};
 use crosscap_algorithms::certificate::{CertificateOptions, CoverReport, Place, certify};
 use crosscap_algorithms::prepare::{Preparation, PreparationSummary, Remedies};
+use crosscap_algorithms::tuning::PreparationTuning;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{Error, PointCloud};
 
@@ -45,7 +46,11 @@ impl<'a> Prepared<'a> {
     }
 
     /// Whatever the points need. Distances alone stay as they are.
-    pub(super) fn of(given: Input<'a>, threads: usize) -> Result<Self, Error> {
+    pub(super) fn of(
+        given: Input<'a>,
+        tuning: &PreparationTuning,
+        threads: usize,
+    ) -> Result<Self, Error> {
         let Input::Points(cloud) = given else {
             return Ok(Self::unchanged(given));
         };
@@ -53,7 +58,7 @@ impl<'a> Prepared<'a> {
         let distinct = cloud.select(&kept);
         let threads = Threads::new(threads)?;
         // Clouds of a dozen points are left alone.
-        let Ok(found) = Preparation::of(&distinct, Remedies::ALL, &threads) else {
+        let Ok(found) = Preparation::of(&distinct, Remedies::ALL, tuning, &threads) else {
             return Ok(Self::unchanged(given));
         };
         let changed = found.left_out || found.projection.is_some();
@@ -142,7 +147,8 @@ impl Better {
     fn unchanged(given: &PointCloud<f64>) -> Result<Self, Error> {
         let rows = distinct_rows(given);
         let cloud = given.select(&rows);
-        let found = Preparation::of(&cloud, Remedies::NONE, &Threads::new(1)?)?;
+        let tuning = PreparationTuning::MEASURED;
+        let found = Preparation::of(&cloud, Remedies::NONE, &tuning, &Threads::new(1)?)?;
         Ok(Self {
             unmoved: cloud.clone(),
             cloud,

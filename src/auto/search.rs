@@ -149,7 +149,7 @@ impl Auto {
         make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
     ) -> Result<Search, Error> {
         let prepared = if self.pinned().is_prepared() {
-            Prepared::of(input, self.pinned().threads.unwrap_or(0))?
+            Prepared::of(input, &self.preparation, self.pinned().threads.unwrap_or(0))?
         } else {
             Prepared::unchanged(input)
         };
@@ -176,7 +176,7 @@ impl Auto {
             ended => ended?,
         };
         // Nothing that is tried mends the coordinates.
-        let doubt = match (Rounded::of(&input), symptom) {
+        let doubt = match (Rounded::of(&input, &self.preparation.resolution), symptom) {
             (Some(rounded), _) => Some(Doubt::Rounded(rounded)),
             (None, Some(_)) => progress.further(make)?,
             (None, None) => None,

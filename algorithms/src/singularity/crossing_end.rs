@@ -255,6 +255,7 @@ impl SingularityModel for CrossingEnd {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crosscap_core::Label;
 
     const RADIUS: f64 = 1.0;
 
@@ -299,8 +300,8 @@ mod tests {
             let fit = decompose(&places).unwrap();
             let end: Vec<f64> = (0..3).map(|k| fit.points[0][k] - places[k]).collect();
             assert!(end.iter().all(|x| x.abs() < 0.02), "{slope}: {end:?}");
-            assert_eq!(fit.labels[0], POINT);
-            for label in 0..10 {
+            assert_eq!(fit.labels[0], Label::from(POINT));
+            for label in (0..10).map(Label::new) {
                 assert!(fit.labels.contains(&label), "{slope}: {label}");
             }
         }

@@ -6,11 +6,16 @@
 
 mod front;
 mod models;
+mod preparation;
 
 pub use front::FrontTuning;
 pub use models::{
     BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,
     TwoPlanesTuning, YJunctionTuning,
+};
+
+pub use preparation::{
+    NoiseTuning, OutlierTuning, PreparationTuning, ProjectionTuning, ResolutionTuning,
 };
 
 use serde::Serialize;
