@@ -10,7 +10,7 @@ use super::density::Density;
 use super::input::Input;
 use super::moves::{opened, other_landmarks};
 use super::pinned::Pinned;
-use super::prepared::Prepared;
+use super::prepared::{Made, Prepared};
 use super::rounded::Rounded;
 use super::symptoms::Symptom;
 use crate::pipeline::{Outcome, Parameters, Pipeline};
@@ -104,6 +104,8 @@ struct Progress<'a> {
     needed: Vec<Option<f64>>,
     /// The attempt that came farthest.
     best: Option<(usize, Result<Outcome, Error>)>,
+    /// What was done about outliers and noise in that attempt.
+    preparation: Option<PreparationSummary>,
     began: Instant,
 }
 
@@ -167,6 +169,7 @@ impl Auto {
             symptoms: Vec::new(),
             needed: Vec::new(),
             best: None,
+            preparation: None,
             began: Instant::now(),
         };
         let symptom = match progress.attempt(first.clone(), reason.clone(), make) {
@@ -228,7 +231,7 @@ impl Progress<'_> {
         // Every further attempt is another chance for a wrong mesh to pass.
         let times = self.attempts.len() + 1;
         let mut make = |parameters| make(parameters).map(|pipeline| pipeline.stricter(times));
-        let outcome = self.prepared.run(&parameters, &mut make)?;
+        let Made { outcome, summary } = self.prepared.run(&parameters, &mut make)?;
         // What was chosen later may not suit the input; that is no fault of the input.
         if let Err(error) = &outcome
             && (*error == Error::Interrupted || error.is_input() && self.attempts.is_empty())
@@ -241,6 +244,7 @@ impl Progress<'_> {
         let nearer = |best: &(usize, _)| end.rank() > self.attempts[best.0].end.rank();
         if self.best.as_ref().is_none_or(nearer) {
             self.best = Some((self.attempts.len(), outcome));
+            self.preparation = summary;
         }
         self.symptoms.push(symptom);
         self.attempts.push(Attempt {
@@ -361,7 +365,7 @@ impl Progress<'_> {
         };
         let (chosen, outcome) = self.best.ok_or_else(nothing)?;
         Ok(Search {
-            preparation: self.prepared.summary().cloned(),
+            preparation: self.preparation,
             density: self.density,
             attempts: self.attempts,
             chosen,
