@@ -131,6 +131,9 @@ pub struct EndTuning {
     pub attempts: usize,
     /// Gaps of the curves about an end that are wider than this are filled by the points beside them.
     pub gap: f64,
+    /// How far the labels of a region reach beyond the cut between it and another one, in eps: as far as the
+    /// edges of the graph that cells are flooded in.
+    pub overlap: f64,
     /// Farthest of the innermost landmarks of the cells about an end, in dl: with those of a random choice
     /// the triangle between two curves was often that of two cells.
     pub innermost: f64,
@@ -146,6 +149,7 @@ impl EndTuning {
         off_center: 0.15,
         attempts: 5,
         gap: 0.1,
+        overlap: 0.4,
         innermost: 1.2,
     };
 }

@@ -127,12 +127,8 @@ impl<S: Scalar> Fitter<'_, S> {
             }
         }
         own.sort_by_key(|x| x.0);
-        let region = EndRegion {
-            labels: own.iter().map(|x| (x.0, x.1)).collect(),
-            fit,
-            place: place.into(),
-            reach,
-        };
+        let labels = own.iter().map(|x| (x.0, x.1)).collect();
+        let region = EndRegion::new(labels, fit, place.into(), reach);
         Some((region, own.into_iter().map(|x| x.2).collect()))
     }
 

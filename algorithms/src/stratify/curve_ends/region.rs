@@ -10,6 +10,8 @@ use crosscap_core::{Decomposition, PointCloud, Scalar, squared_distance};
 pub(in crate::stratify) struct EndRegion {
     /// Rows of the region with their labels, by row.
     pub(in crate::stratify) labels: Vec<(u32, u8)>,
+    /// Rows beyond a cut between two regions with the labels that they have by this one, by row.
+    beyond: Vec<(u32, u8)>,
     /// The strata, without the labels.
     pub(in crate::stratify) fit: Decomposition,
     /// Place of the point.
@@ -28,6 +30,29 @@ pub(in crate::stratify) struct Settled {
 }
 
 impl EndRegion {
+    /// The rows nearer than `reach` to `place`, each with its label and by row, with the strata that the labels name.
+    pub(in crate::stratify) fn new(
+        labels: Vec<(u32, u8)>,
+        fit: Decomposition,
+        place: Vec<f64>,
+        reach: f64,
+    ) -> Self {
+        Self {
+            labels,
+            beyond: Vec::new(),
+            fit,
+            place,
+            reach,
+        }
+    }
+
+    /// Rows with their labels, by row: those of the region, and those beyond a cut.
+    pub(in crate::stratify) fn known(&self) -> Vec<(u32, u8)> {
+        let mut all = [&self.labels[..], &self.beyond[..]].concat();
+        all.sort_unstable();
+        all
+    }
+
     /// The label of a row.
     pub(in crate::stratify) fn label(&self, row: usize) -> Option<u8> {
         let key = |x: &(u32, u8)| x.0;
@@ -59,8 +84,9 @@ impl EndRegion {
 }
 
 /// Regions that overlap reach half of the way to the other's point, or more where the other does not come
-/// as near: a row has labels of one region alone.
-pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer]) {
+/// as near: a row belongs to one region alone. Labels reach `overlap` radii of the analysis farther than that: without, no fit
+/// would know both ends of an edge across the cut, and cells would be one there.
+pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer], overlap: f64) {
     let limits: Vec<f64> = (0..answers.len())
         .map(|k| {
             let own = &answers[k].region;
@@ -75,9 +101,11 @@ pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer]) {
     for (answer, limit) in answers.iter_mut().zip(limits) {
         let region = &mut answer.region;
         if limit < region.reach {
-            let mut labels = std::mem::take(&mut region.labels);
-            labels.retain(|x| region.far(cloud, x.0 as usize) < limit);
-            region.labels = labels;
+            let far = |x: &(u32, u8)| region.far(cloud, x.0 as usize);
+            let (own, mut beyond): (Vec<_>, Vec<_>) =
+                (region.labels.iter().copied()).partition(|x| far(x) < limit);
+            beyond.retain(|x| far(x) < limit + overlap * answer.eps);
+            (region.labels, region.beyond) = (own, beyond);
             region.reach = limit;
             answer.settled.retain(|x| region.label(x.row).is_some());
         }
@@ -127,12 +155,7 @@ mod tests {
             center: vec![at],
             center_offset: 0.0,
         };
-        let mut region = EndRegion {
-            labels: Vec::new(),
-            fit,
-            place: vec![at],
-            reach,
-        };
+        let mut region = EndRegion::new(Vec::new(), fit, vec![at], reach);
         let rows: Vec<usize> = (0..cloud.len())
             .filter(|&r| region.far(cloud, r) < reach)
             .collect();
@@ -154,7 +177,7 @@ mod tests {
         let cloud = PointCloud::new(1, (0..31).map(|k| f64::from(k) / 10.0).collect()).unwrap();
         let all = [(0.51, 0.7), (1.53, 0.7), (2.8, 0.4)];
         let mut answers = all.map(|(at, reach)| answer(&cloud, at, reach));
-        part(&cloud, &mut answers);
+        part(&cloud, &mut answers, 0.5);
         let reaches = answers.each_ref().map(|a| a.region.reach);
         // The first two meet half way; the third is clear of both.
         for (found, expected) in reaches.iter().zip([0.51, 0.51, 0.4]) {
@@ -168,5 +191,11 @@ mod tests {
             assert_eq!(a.settled.len(), a.region.labels.len());
             assert!(!a.settled.is_empty());
         }
+        // Those next to the cut are known to both.
+        let known = answers.each_ref().map(|a| a.region.known());
+        for row in [9, 11] {
+            assert!(known[..2].iter().all(|k| k.contains(&(row, 0))), "{row}");
+        }
+        assert_eq!(known[2].len(), answers[2].region.labels.len());
     }
 }
