@@ -10,7 +10,7 @@ use crosscap_core::{Decomposition, PointCloud, Scalar, squared_distance};
 pub(in crate::stratify) struct EndRegion {
     /// Rows of the region with their labels, by row.
     pub(in crate::stratify) labels: Vec<(u32, u8)>,
-    /// Rows beyond a cut between two regions with the labels that they have by this one, by row.
+    /// Rows beyond it with the labels that they have by its fit.
     beyond: Vec<(u32, u8)>,
     /// The strata, without the labels.
     pub(in crate::stratify) fit: Decomposition,
@@ -30,23 +30,24 @@ pub(in crate::stratify) struct Settled {
 }
 
 impl EndRegion {
-    /// The rows nearer than `reach` to `place`, each with its label and by row, with the strata that the labels name.
+    /// The rows nearer than `reach` to `place`, each with its label and by row, some beyond, and the strata that the
+    /// labels name.
     pub(in crate::stratify) fn new(
-        labels: Vec<(u32, u8)>,
+        [labels, beyond]: [Vec<(u32, u8)>; 2],
         fit: Decomposition,
         place: Vec<f64>,
         reach: f64,
     ) -> Self {
         Self {
             labels,
-            beyond: Vec::new(),
+            beyond,
             fit,
             place,
             reach,
         }
     }
 
-    /// Rows with their labels, by row: those of the region, and those beyond a cut.
+    /// Rows with their labels, by row: those of the region, and those beyond.
     pub(in crate::stratify) fn known(&self) -> Vec<(u32, u8)> {
         let mut all = [&self.labels[..], &self.beyond[..]].concat();
         all.sort_unstable();
@@ -66,7 +67,7 @@ impl EndRegion {
     }
 
     /// Whether a label names a cell.
-    pub(super) fn is_cell(&self, label: u8) -> bool {
+    pub(in crate::stratify) fn is_cell(&self, label: u8) -> bool {
         self.fit.strata[usize::from(label)].dimension == 2
     }
 
@@ -84,8 +85,7 @@ impl EndRegion {
 }
 
 /// Regions that overlap reach half of the way to the other's point, or more where the other does not come
-/// as near: a row belongs to one region alone. Labels reach `overlap` radii of the analysis farther than that: without, no fit
-/// would know both ends of an edge across the cut, and cells would be one there.
+/// as near: a row belongs to one region alone. Labels reach `overlap` radii of the analysis farther than that.
 pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer], overlap: f64) {
     let limits: Vec<f64> = (0..answers.len())
         .map(|k| {
@@ -103,7 +103,7 @@ pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer], ove
         if limit < region.reach {
             let far = |x: &(u32, u8)| region.far(cloud, x.0 as usize);
             let (own, mut beyond): (Vec<_>, Vec<_>) =
-                (region.labels.iter().copied()).partition(|x| far(x) < limit);
+                (region.known().into_iter()).partition(|x| far(x) < limit);
             beyond.retain(|x| far(x) < limit + overlap * answer.eps);
             (region.labels, region.beyond) = (own, beyond);
             region.reach = limit;
@@ -155,7 +155,7 @@ mod tests {
             center: vec![at],
             center_offset: 0.0,
         };
-        let mut region = EndRegion::new(Vec::new(), fit, vec![at], reach);
+        let mut region = EndRegion::new([Vec::new(), Vec::new()], fit, vec![at], reach);
         let rows: Vec<usize> = (0..cloud.len())
             .filter(|&r| region.far(cloud, r) < reach)
             .collect();
