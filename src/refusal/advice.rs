@@ -1,6 +1,7 @@
 //! What to do about it.
 
-use super::fault::{Fault, FaultKind};
+use super::fault::Fault;
+use super::kind::FaultKind;
 use crate::auto::Topology;
 use crate::pipeline::{Outcome, Parameters};
 use crosscap_core::Error;

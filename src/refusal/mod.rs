@@ -7,11 +7,13 @@
 
 mod advice;
 mod fault;
+mod kind;
 mod places;
 mod surroundings;
 
 pub use advice::Advice;
-pub use fault::{Fault, FaultKind, Spot};
+pub use fault::{Fault, Spot};
+pub use kind::FaultKind;
 pub use surroundings::Surroundings;
 
 use crate::auto::{Attempt, Doubt, Search};

@@ -1,6 +1,6 @@
 //! Where a reconstruction failed, gathered from its stages.
 
-use super::fault::FaultKind;
+use super::kind::FaultKind;
 use crate::pipeline::Outcome;
 use crosscap_algorithms::certificate::{Place, Violation, ViolationKind};
 use crosscap_core::{Error, Mesh};

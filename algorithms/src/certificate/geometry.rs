@@ -7,6 +7,7 @@ use super::incidence::Incidence;
 use super::pinched::{Pinched, parted};
 use super::stacked::Planes;
 use super::tree::{Bounds, Tree};
+pub(super) use super::triangle::{area, corners};
 use super::{Limits, Place, SpecialPoint, Violation, ViolationKind, exceeds};
 use crosscap_core::{LinkKind, Mesh};
 use serde::Serialize;
@@ -38,39 +39,6 @@ pub struct GeometryReport {
 /// Pairs to look at, per triangle, before a mesh is called entangled.
 const PAIRS_PER_TRIANGLE: usize = 3000;
 
-pub(super) fn corners(mesh: &Mesh, t: u32) -> [&[f64]; 3] {
-    mesh.complex.triangles[t as usize].map(|v| mesh.vertices.point(v as usize))
-}
-
-/// Area of a triangle of R^N, through the height over the longest side of the first corner:
-/// accurate for needles as well.
-pub(super) fn area([a, b, c]: [&[f64]; 3]) -> f64 {
-    let dot = |p: &[f64], q: &[f64]| -> f64 {
-        p.iter()
-            .zip(q)
-            .zip(a)
-            .map(|((p, q), a)| (p - a) * (q - a))
-            .sum()
-    };
-    let (bb, cc, bc) = (dot(b, b), dot(c, c), dot(b, c));
-    let (base, along, from, to) = if bb >= cc {
-        (bb, bc, b, c)
-    } else {
-        (cc, bc, c, b)
-    };
-    if base == 0.0 {
-        return 0.0;
-    }
-    let k = along / base;
-    let height: f64 = (0..a.len())
-        .map(|i| {
-            let h = (to[i] - a[i]) - k * (from[i] - a[i]);
-            h * h
-        })
-        .sum();
-    0.5 * (base * height).sqrt()
-}
-
 pub(super) fn check(
     mesh: &Mesh,
     incidence: &Incidence,
@@ -91,13 +59,13 @@ pub(super) fn check(
             .squared_distance(a as usize, b as usize)
             .sqrt()
     };
-    let all = super::quality::median(
+    let all = super::statistics::median(
         triangles
             .iter()
             .flat_map(|&[a, b, c]| [length(a, b), length(a, c), length(b, c)])
             .collect(),
     );
-    let first = super::quality::median(triangles.iter().map(|t| length(t[0], t[1])).collect());
+    let first = super::statistics::median(triangles.iter().map(|t| length(t[0], t[1])).collect());
     let (small, large) = (all.min(first), all.max(first));
 
     let flat: Vec<Place> = (0..count as u32)

@@ -735,7 +735,7 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
         let mut values =
             nalgebra::DMatrix::from_row_slice(n, n, &self.dense).symmetric_eigenvalues();
         values.as_mut_slice().sort_by(|a, b| b.total_cmp(a));
-        super::dimension_of(values.as_slice(), dt)
+        decide::dimension_of(values.as_slice(), dt)
     }
 
     /// The rows of the ball, from first to last.
@@ -787,7 +787,7 @@ impl<'a, S: Scalar, const L: usize, const M: usize> Sweep<'a, S, L, M> {
             return found;
         }
         let frame = PrincipalFrame::of(cloud, self.rows.iter().copied());
-        super::dimension_of(&frame.variances, dt)
+        decide::dimension_of(&frame.variances, dt)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::producer::WaistProducer;
 use crate::tuning::RefinementTuning;
-use crosscap_core::{Complex, Neighbor, NeighborhoodOracle, Scalar};
+use crosscap_core::{Complex, Landmark, Neighbor, NeighborhoodOracle, Row, Scalar, Table};
 
 /// A triangulation beside the points that it should follow.
 pub struct Refinement<'r, S: Scalar> {
@@ -11,7 +11,7 @@ pub struct Refinement<'r, S: Scalar> {
     /// Says where every row lies, and which may be landmarks.
     pub producer: &'r dyn WaistProducer<S>,
     /// Rows of the landmarks.
-    pub rows: &'r [usize],
+    pub rows: &'r Table<Landmark, Row>,
     /// Landmark separation dl.
     pub dl: f64,
     /// How many times dl the separation at each point is; once everywhere when left out.
@@ -25,7 +25,7 @@ impl<S: Scalar> Refinement<'_, S> {
     /// every point. None where every point is one already, or the producer names no places.
     ///
     /// O(log n) for each triangle, O(L) for each that strays, with L landmarks.
-    pub fn rows_where_astray(&self, complex: &Complex) -> Vec<usize> {
+    pub fn rows_where_astray(&self, complex: &Complex) -> Vec<Row> {
         let mut added = Vec::new();
         let Some(places) = self.producer.places() else {
             return added;
@@ -33,7 +33,7 @@ impl<S: Scalar> Refinement<'_, S> {
         if self.rows.len() == places.len() {
             return added;
         }
-        let place = |v: u32| places.point(self.rows[v as usize]);
+        let place = |v: u32| places.point(self.rows[Landmark::from(v)].index());
         let mut middle: Vec<S> = Vec::new();
         for t in &complex.triangles {
             let [a, b, c] = *t;
@@ -43,26 +43,25 @@ impl<S: Scalar> Refinement<'_, S> {
                     let sum: f64 = corners.iter().map(|&v| place(v)[k]).sum();
                     S::of(sum / corners.len() as f64)
                 }));
-                added.extend(self.missing(self.rows[a as usize], t.map(place), &middle, &added));
+                added.extend(self.missing(
+                    self.rows[Landmark::from(a)],
+                    t.map(place),
+                    &middle,
+                    &added,
+                ));
             }
         }
         added
     }
 
     /// Landmark separation at a row.
-    fn separation(&self, row: usize) -> f64 {
-        self.dl * self.scale.map_or(1.0, |scale| scale[row])
+    fn separation(&self, row: Row) -> f64 {
+        self.dl * self.scale.map_or(1.0, |scale| scale[row.index()])
     }
 
     /// A row that should be a landmark beside a triangle with the given corners, the first of which stands for `row`,
     /// and a part of which has its middle at `middle`; `added` are landmarks that were added before.
-    fn missing(
-        &self,
-        row: usize,
-        corners: [&[f64]; 3],
-        middle: &[S],
-        added: &[usize],
-    ) -> Option<usize> {
+    fn missing(&self, row: Row, corners: [&[f64]; 3], middle: &[S], added: &[Row]) -> Option<Row> {
         let RefinementTuning {
             stray,
             separation,
@@ -85,8 +84,8 @@ impl<S: Scalar> Refinement<'_, S> {
         if off_plane(corners, middle, places.point(nearest.index)) < stray * dl {
             return None;
         }
-        let free = |row: usize| self.is_free(row, added, separation * dl);
-        near.iter().map(|x| x.index).find(|&r| free(r))
+        let free = |row: Row| self.is_free(row, added, separation * dl);
+        near.iter().map(Neighbor::row).find(|&r| free(r))
     }
 
     /// Rows that should be landmarks as well: points that a mesh leaves behind, at an edge or a tip that its triangles
@@ -94,7 +93,7 @@ impl<S: Scalar> Refinement<'_, S> {
     ///
     /// Points without company are outliers and stay where they are. None where the space has no coordinates.
     /// O(n + f (log n + L)) for n points, f of them far from the mesh, and L landmarks.
-    pub fn rows_left_behind(&self, heights: &[f64]) -> Vec<usize> {
+    pub fn rows_left_behind(&self, heights: &[f64]) -> Vec<Row> {
         let mut added = Vec::new();
         if self
             .producer
@@ -103,9 +102,10 @@ impl<S: Scalar> Refinement<'_, S> {
         {
             return added;
         }
-        let far = |row: usize| heights[row] / self.separation(row);
-        let is_far = |&row: &usize| far(row).is_finite() && far(row) > self.tuning.behind;
-        let mut behind: Vec<usize> = (0..heights.len()).filter(is_far).collect();
+        let far = |row: Row| heights[row.index()] / self.separation(row);
+        let is_far = |&row: &Row| far(row).is_finite() && far(row) > self.tuning.behind;
+        let rows = (0..heights.len()).map(Row::new);
+        let mut behind: Vec<Row> = rows.filter(is_far).collect();
         behind.sort_by(|&a, &b| far(b).total_cmp(&far(a)).then(a.cmp(&b)));
         for row in behind {
             if self.is_free(row, &added, self.tuning.separation * self.separation(row))
@@ -118,22 +118,24 @@ impl<S: Scalar> Refinement<'_, S> {
     }
 
     /// Whether half of the nearest points of a row are at least half as far from the mesh as it is.
-    fn has_company(&self, row: usize, heights: &[f64]) -> bool {
+    fn has_company(&self, row: Row, heights: &[f64]) -> bool {
         let mut near: Vec<Neighbor<S>> = Vec::new();
-        self.near.nearest(row, self.tuning.company + 1, &mut near);
-        let others = near.iter().map(|x| x.index).filter(|&other| other != row);
-        let along = others.filter(|&other| heights[other] >= 0.5 * heights[row]);
+        self.near
+            .nearest(row.index(), self.tuning.company + 1, &mut near);
+        let others = near.iter().map(|x| x.index).filter(|&x| x != row.index());
+        let along = others.filter(|&other| heights[other] >= 0.5 * heights[row.index()]);
         2 * along.count() >= self.tuning.company
     }
 
     /// Whether a row may become a landmark: it lies in a cell, so far from all others and from those `added`.
-    fn is_free(&self, row: usize, added: &[usize], separation: f64) -> bool {
+    fn is_free(&self, row: Row, added: &[Row], separation: f64) -> bool {
         let Some(places) = self.producer.places() else {
             return false;
         };
         let limit = separation.powi(2);
         let mut others = self.rows.iter().chain(added);
-        self.producer.may_add(row) && others.all(|&r| places.squared_distance(r, row) >= limit)
+        self.producer.may_add(row)
+            && others.all(|r| places.squared_distance(r.index(), row.index()) >= limit)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::instances::{Draw, Instance};
 use super::motion::{Motion, motions};
-use super::settings::{Outcome, ensure};
+use super::trial::{Outcome, ensure};
 use super::{Failures, Findings, Law, Settings};
 use crate::{Decomposition, LocalPoints, Rejection, SingularityModel};
 use proptest::collection::vec;

@@ -14,10 +14,10 @@ impl Search<'_> {
     pub(super) fn part(&self, t: u32, spacing: f64, inside: &impl Fn(&[f64]) -> bool) -> f64 {
         let shape = Shape::new(corners(self.mesh, t));
         let mut place = vec![0.0; self.mesh.vertices.dimension()];
-        let mut area = 0.0;
+        let (mut area, finest) = (0.0, self.finest());
         shape.cut(&mut place, &mut |tile, place| {
             let scale = tile.scale();
-            if shape.longest * scale > TILE * spacing {
+            if scale > finest && shape.longest * scale > TILE * spacing {
                 return Cut::Further;
             }
             if inside(place) {

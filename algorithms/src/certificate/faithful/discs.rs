@@ -65,6 +65,7 @@ impl Search<'_> {
     /// Tiles further from the points than the least level asks, with their middles one after the other.
     pub(super) fn far_tiles(&self) -> (Vec<Empty>, Vec<f64>) {
         let least = self.even.radius(self.least_level());
+        let finest = self.finest();
         let mut place = vec![0.0; self.mesh.vertices.dimension()];
         let (mut tiles, mut middles) = (Vec::new(), Vec::new());
         for (t, &corner) in self.mesh.complex.triangles.iter().enumerate() {
@@ -82,7 +83,7 @@ impl Search<'_> {
                     return Cut::Leave;
                 }
                 let density = self.ground.density_at(corner, weights);
-                if shape.longest * scale * density.sqrt() > TILE {
+                if scale > finest && shape.longest * scale * density.sqrt() > TILE {
                     return Cut::Further;
                 }
                 if away * density.sqrt() >= least {

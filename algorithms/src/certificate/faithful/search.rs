@@ -22,6 +22,10 @@ pub(super) const CHORD: f64 = 0.15;
 /// among dense ones is no gap.
 const VARIES: f64 = 1.5;
 
+/// Tiles of one triangle for each point of the whole sample, about: at the density that the points have a triangle that holds all of them needs fewer. One that would need
+/// more is nearly empty, or without area, and larger tiles show that as well.
+const TILES: f64 = 16.0;
+
 /// What gaps are looked for in.
 pub(in crate::certificate) struct Search<'a> {
     pub mesh: &'a Mesh,
@@ -131,6 +135,11 @@ impl<'a> Search<'a> {
     /// Number of points that stand on triangles.
     pub(super) fn points(&self) -> usize {
         self.tree.order().len()
+    }
+
+    /// The side of the smallest tile of a triangle, as a share of the triangle's.
+    pub(super) fn finest(&self) -> f64 {
+        (TILES * self.points() as f64).sqrt().recip()
     }
 
     /// Distance from a place to the nearest point, and to the end of the mesh.

@@ -166,6 +166,18 @@ fn chance_is_no_gap() {
 }
 
 /// On a grid a hole is seen that chance would leave in a random sample.
+/// In the units of a few points that are close together a mesh can be without measure: it is told so before the end of days.
+#[test]
+fn a_mesh_much_larger_than_its_points() {
+    let mut mesh = plate(|_, _| false);
+    let stretched = mesh.vertices.coordinates().iter().map(|x| 1e9 * x);
+    mesh.vertices = PointCloud::new(3, stretched.collect()).unwrap();
+    let points = (0..90).map(|k| f64::from(k * k % 37) * 1e-3).collect();
+    let points = PointCloud::new(3, points).unwrap();
+    let faults: Vec<_> = judged(&mesh, &points).violations().cloned().collect();
+    assert!(!faults.is_empty(), "far from its points");
+}
+
 #[test]
 fn even_points_show_smaller_holes() {
     let (mesh, cell) = (plate(|_, _| false), 1.0 / 22.0);

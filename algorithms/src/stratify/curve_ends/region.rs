@@ -3,15 +3,15 @@
 use super::Answer;
 use crate::stratify::site::On;
 use crate::stratify::strata::Strata;
-use crosscap_core::{Decomposition, PointCloud, Scalar, squared_distance};
+use crosscap_core::{Decomposition, PointCloud, Row, Scalar, squared_distance};
 
 /// A point at which a curve ends, with the points about it.
 #[derive(Clone, Debug)]
 pub(in crate::stratify) struct EndRegion {
     /// Rows of the region with their labels, by row.
-    pub(in crate::stratify) labels: Vec<(u32, u8)>,
+    pub(in crate::stratify) labels: Vec<(Row, u8)>,
     /// Rows beyond it with the labels that they have by its fit.
-    beyond: Vec<(u32, u8)>,
+    beyond: Vec<(Row, u8)>,
     /// The strata, without the labels.
     pub(in crate::stratify) fit: Decomposition,
     /// Place of the point.
@@ -22,7 +22,7 @@ pub(in crate::stratify) struct EndRegion {
 
 /// What becomes of a row of a region.
 pub(in crate::stratify) struct Settled {
-    pub(in crate::stratify) row: usize,
+    pub(in crate::stratify) row: Row,
     /// On which stratum it is, `None` inside a cell.
     pub(in crate::stratify) on: Option<On>,
     /// The curve that a row of a cell is near.
@@ -33,7 +33,7 @@ impl EndRegion {
     /// The rows nearer than `reach` to `place`, each with its label and by row, some beyond, and the strata that the
     /// labels name.
     pub(in crate::stratify) fn new(
-        [labels, beyond]: [Vec<(u32, u8)>; 2],
+        [labels, beyond]: [Vec<(Row, u8)>; 2],
         fit: Decomposition,
         place: Vec<f64>,
         reach: f64,
@@ -48,22 +48,21 @@ impl EndRegion {
     }
 
     /// Rows with their labels, by row: those of the region, and those beyond.
-    pub(in crate::stratify) fn known(&self) -> Vec<(u32, u8)> {
+    pub(in crate::stratify) fn known(&self) -> Vec<(Row, u8)> {
         let mut all = [&self.labels[..], &self.beyond[..]].concat();
         all.sort_unstable();
         all
     }
 
     /// The label of a row.
-    pub(in crate::stratify) fn label(&self, row: usize) -> Option<u8> {
-        let key = |x: &(u32, u8)| x.0;
-        let at = self.labels.binary_search_by_key(&(row as u32), key).ok()?;
+    pub(in crate::stratify) fn label(&self, row: Row) -> Option<u8> {
+        let at = self.labels.binary_search_by_key(&row, |x| x.0).ok()?;
         Some(self.labels[at].1)
     }
 
     /// Its rows.
-    pub(super) fn rows(&self) -> impl Iterator<Item = usize> {
-        self.labels.iter().map(|x| x.0 as usize)
+    pub(super) fn rows(&self) -> impl Iterator<Item = Row> {
+        self.labels.iter().map(|x| x.0)
     }
 
     /// Whether a label names a cell.
@@ -77,8 +76,8 @@ impl EndRegion {
     }
 
     /// How far a row of the cloud is from the point.
-    pub(super) fn far<S: Scalar>(&self, cloud: &PointCloud<S>, row: usize) -> f64 {
-        let own = cloud.point(row).iter().map(|x| x.as_f64());
+    pub(super) fn far<S: Scalar>(&self, cloud: &PointCloud<S>, row: Row) -> f64 {
+        let own = cloud.point(row.index()).iter().map(|x| x.as_f64());
         let squares = own.zip(&self.place).map(|(x, p)| (x - p) * (x - p));
         squares.sum::<f64>().sqrt()
     }
@@ -101,7 +100,7 @@ pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer], ove
     for (answer, limit) in answers.iter_mut().zip(limits) {
         let region = &mut answer.region;
         if limit < region.reach {
-            let far = |x: &(u32, u8)| region.far(cloud, x.0 as usize);
+            let far = |x: &(Row, u8)| region.far(cloud, x.0);
             let (own, mut beyond): (Vec<_>, Vec<_>) =
                 (region.known().into_iter()).partition(|x| far(x) < limit);
             beyond.retain(|x| far(x) < limit + overlap * answer.eps);
@@ -115,21 +114,22 @@ pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer], ove
 /// The regular row nearest to the point of every region in each of its cells, at most `within` from it, but as
 /// clear of the curves as can be: without a landmark there the triangle between two curves would be that of
 /// several cells.
-pub(in crate::stratify) fn innermost(strata: &Strata, within: f64) -> Vec<usize> {
+pub(in crate::stratify) fn innermost(strata: &Strata, within: f64) -> Vec<Row> {
     let Some(places) = strata.places() else {
         return Vec::new();
     };
     let mut out = Vec::new();
     for region in strata.regions() {
-        let on_curves: Vec<usize> = region.rows().filter(|&r| !strata.is_regular(r)).collect();
-        let clear = |row: usize| {
-            let squares = on_curves.iter().map(|&c| places.squared_distance(row, c));
+        let on_curves: Vec<Row> = region.rows().filter(|&r| !strata.is_regular(r)).collect();
+        let clear = |row: Row| {
+            let squares = on_curves.iter();
+            let squares = squares.map(|c| places.squared_distance(row.index(), c.index()));
             squares.fold(f64::INFINITY, f64::min)
         };
         for label in (0..region.fit.strata.len() as u8).filter(|&l| region.is_cell(l)) {
             let own = region.labels.iter().filter(|x| x.1 == label);
-            let near = own.map(|x| x.0 as usize).filter(|&row| {
-                strata.is_regular(row) && region.distance(places.point(row)) < within
+            let near = own.map(|x| x.0).filter(|&row| {
+                strata.is_regular(row) && region.distance(places.point(row.index())) < within
             });
             let best = near.max_by(|&a, &b| clear(a).total_cmp(&clear(b)).then(b.cmp(&a)));
             out.extend(best);
@@ -156,11 +156,12 @@ mod tests {
             center_offset: 0.0,
         };
         let mut region = EndRegion::new([Vec::new(), Vec::new()], fit, vec![at], reach);
-        let rows: Vec<usize> = (0..cloud.len())
+        let rows: Vec<Row> = (0..cloud.len())
+            .map(Row::new)
             .filter(|&r| region.far(cloud, r) < reach)
             .collect();
-        region.labels = rows.iter().map(|&r| (r as u32, 0)).collect();
-        let settled = |&row: &usize| Settled {
+        region.labels = rows.iter().map(|&r| (r, 0)).collect();
+        let settled = |&row: &Row| Settled {
             row,
             on: None,
             beside: None,
@@ -183,7 +184,7 @@ mod tests {
         for (found, expected) in reaches.iter().zip([0.51, 0.51, 0.4]) {
             assert!((found - expected).abs() < 1e-12, "{reaches:?}");
         }
-        for row in 0..cloud.len() {
+        for row in (0..cloud.len()).map(Row::new) {
             let holding = answers.iter().filter(|a| a.region.label(row).is_some());
             assert!(holding.count() <= 1, "{row}");
         }
@@ -194,7 +195,10 @@ mod tests {
         // Those next to the cut are known to both.
         let known = answers.each_ref().map(|a| a.region.known());
         for row in [9, 11] {
-            assert!(known[..2].iter().all(|k| k.contains(&(row, 0))), "{row}");
+            assert!(
+                known[..2].iter().all(|k| k.contains(&(Row::new(row), 0))),
+                "{row}"
+            );
         }
         assert_eq!(known[2].len(), answers[2].region.labels.len());
     }

@@ -3,7 +3,7 @@
 use super::thin::thin;
 use super::{Ground, Skeleton};
 use crate::stratify::site::StratumKind;
-use crosscap_core::Scalar;
+use crosscap_core::{Row, Scalar};
 
 /// The branch of a curve at a corner: the position of the fit about the corner, and its label.
 pub(super) type Branch = (usize, u8);
@@ -11,7 +11,7 @@ pub(super) type Branch = (usize, u8);
 /// Thinned points of a kind of curve.
 pub(super) struct Nodes {
     pub(super) kind: StratumKind,
-    pub(super) rows: Vec<usize>,
+    pub(super) rows: Vec<Row>,
     /// The branch that each is on, where a fit about a corner tells.
     pub(super) branches: Vec<Option<Branch>>,
 }
@@ -28,7 +28,7 @@ impl Nodes {
         // Next to a corner the points of a boundary are in the band of both sheets: which
         // branch they are on cannot be told, and the corner stands for them.
         rows.retain(|&row| {
-            let corners = &skeleton.rows[..skeleton.corners];
+            let corners = skeleton.corner_rows();
             corners.iter().all(|&c| ground.distance(c, row) > spacing)
                 && label(skeleton, ground, row).is_none_or(|(k, l)| {
                     let corner = skeleton.corner_fit(k);
@@ -56,7 +56,7 @@ impl Nodes {
     /// 0-strata tell arcs apart, and where a boundary was given the cells at a corner do. Where the bands of two arcs run
     /// together, or a point of a cell fills a gap of one, the nearest point that is on one arc alone decides.
     fn keep_arcs<S: Scalar>(&mut self, skeleton: &Skeleton, ground: &Ground<'_, '_, S>) {
-        let on_arc: Vec<(usize, Branch)> = (self.rows.iter().zip(&self.branches))
+        let on_arc: Vec<(Row, Branch)> = (self.rows.iter().zip(&self.branches))
             .filter_map(|(&row, &found)| Some((row, found?)))
             .filter(|&(_, (k, l))| {
                 let corner = skeleton.corner_fit(k);
@@ -73,7 +73,7 @@ impl Nodes {
                 if corner.is_curve(l) {
                     return Some((k, l));
                 }
-                let far = |x: &(usize, Branch)| ground.distance(x.0, row);
+                let far = |x: &(Row, Branch)| ground.distance(x.0, row);
                 let own = on_arc.iter().filter(|x| x.1.0 == k);
                 own.min_by(|a, b| far(a).total_cmp(&far(b))).map(|x| x.1)
             });
@@ -98,7 +98,7 @@ impl Nodes {
 }
 
 /// What the nearest fit about a corner that knows a row says of it.
-fn label<S: Scalar>(skeleton: &Skeleton, ground: &Ground<'_, '_, S>, row: usize) -> Option<Branch> {
+fn label<S: Scalar>(skeleton: &Skeleton, ground: &Ground<'_, '_, S>, row: Row) -> Option<Branch> {
     skeleton
         .corner_fits()
         .enumerate()
