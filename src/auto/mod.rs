@@ -3,6 +3,7 @@
 //! [`Parameters::auto`] is the way in. The lengths come from the [`Density`] of the points; what the
 //! user has [`Pinned`] stays as it is. What was tried, and why, is in [`Search::attempts`].
 
+mod alone;
 mod attempt;
 mod density;
 mod input;
@@ -51,7 +52,7 @@ pub struct Auto {
 }
 
 /// Attempts at most, where nothing is said.
-pub const USUAL_TRIES: usize = 6;
+pub const USUAL_TRIES: usize = 7;
 
 impl Default for Auto {
     fn default() -> Self {

@@ -166,6 +166,26 @@ pub struct PreparationSummary {
     pub tuning: PreparationTuning,
 }
 
+impl PreparationSummary {
+    /// The same with rows by other names: those of the cloud that the one looked at was taken from.
+    pub fn named(mut self, name: impl Fn(usize) -> usize) -> Self {
+        self.outliers.iter_mut().for_each(|row| *row = name(*row));
+        self
+    }
+
+    /// The same with more rows left out.
+    pub fn without(mut self, rows: &[usize]) -> Self {
+        if !self.outliers_left_out {
+            self.outliers.clear();
+        }
+        self.outliers.extend(rows);
+        self.outliers.sort_unstable();
+        self.outliers.dedup();
+        self.outliers_left_out = !self.outliers.is_empty();
+        self
+    }
+}
+
 /// Rows that are named one by one.
 const NAMED: usize = 5;
 
@@ -261,5 +281,13 @@ mod tests {
         assert_eq!(only.outliers.rows, [3000]);
         assert!(only.points(&cloud) == cloud);
         assert!(!only.summary().outliers_left_out);
+        // What was seen and stayed is not among those that are left out later.
+        let later = only.summary().named(|row| row + 10).without(&[7, 3, 7]);
+        assert_eq!(later.outliers, [3, 7]);
+        assert!(
+            later
+                .to_string()
+                .contains("left out 2 outliers (rows 3, 7)")
+        );
     }
 }

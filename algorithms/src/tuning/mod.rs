@@ -136,6 +136,10 @@ pub struct EndTuning {
     pub attempts: usize,
     /// Gaps of the curves about an end that are wider than this are filled by the points beside them.
     pub gap: f64,
+    /// How far the labels of a region reach beyond it, in eps: farther than the edges of the graph that cells are flooded in.
+    /// Without, no fit knew both ends of an edge across the cut between two regions, or across a strip between
+    /// them, and the four cells were one there.
+    pub overlap: f64,
     /// Farthest of the innermost landmarks of the cells about an end, in dl: with those of a random choice
     /// the triangle between two curves was often that of two cells.
     pub innermost: f64,
@@ -151,6 +155,7 @@ impl EndTuning {
         off_center: 0.15,
         attempts: 5,
         gap: 0.1,
+        overlap: 0.4,
         innermost: 1.2,
     };
 }
@@ -255,6 +260,9 @@ pub struct RefinementTuning {
     /// Nearest points of one that is left behind, half of which are at least half as far from the mesh: an outlier
     /// has no such company.
     pub company: usize,
+    /// Share of its distance from the mesh within which the same half may be instead: at a tip, where the mesh is soon
+    /// reached, a point is alone so far from it. The nearest points of an outlier are on the mesh.
+    pub nearer: f64,
     /// Rounds of landmarks at points that are left behind.
     pub mends: usize,
 }
@@ -270,6 +278,7 @@ impl RefinementTuning {
         open_share: 0.01,
         behind: 0.6,
         company: 4,
+        nearer: 0.75,
         mends: 3,
     };
 }
