@@ -4,6 +4,7 @@ use super::curve_end;
 use super::page_sheets::PageSheets;
 use super::patch::PATCH_POINTS;
 use super::tolerance::{Tolerance, at_least, vectors};
+use crate::tuning::BookTuning;
 use crosscap_core::{
     Decomposition, Error, Label, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
@@ -18,18 +19,8 @@ use nalgebra::Vector3;
 #[derive(Clone, Copy, Debug)]
 pub struct Book {
     tolerance: Tolerance,
+    tuning: BookTuning,
 }
-
-/// Farthest that the curve is from the middle of the points, in radii: farther out pages are missing in the ball.
-const OFF_CENTER: f64 = 0.35;
-/// Least share of the points that a page holds.
-const LEAST_SHARE: f64 = 0.04;
-/// Farthest that a point is moved, in radii.
-const STEP: f64 = 0.6;
-/// A point off the curve tells where it is up to this many ep.
-const WITNESS_REACH: f64 = 3.0;
-/// Every page has a point this close to a place on the curve, in radii.
-const SUPPORT: f64 = 0.6;
 
 impl Book {
     /// Model with fit tolerance `dp` and curve tolerance `ep`, unit of the data: a point nearer than
@@ -40,34 +31,42 @@ impl Book {
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
             tolerance: Tolerance::new(dp, ep)?,
+            tuning: BookTuning::MEASURED,
         })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: BookTuning) -> Self {
+        Self { tuning, ..self }
     }
 
     fn fit(&self, local: &LocalPoints<'_>) -> Result<Fit, Rejection> {
         at_least(3 * PATCH_POINTS, local)?;
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..local.fitted];
-        let book = PageSheets::read(&all, local.fitted, local.radius, |pages| {
+        let (tuning, radius) = (&self.tuning, local.radius);
+        let book = PageSheets::read(&all, local.fitted, radius, |pages| {
             let aside = pages.place - pages.along * pages.along.dot(&pages.place);
             let known = match (pages.out.len(), pages.pairs().len()) {
                 (3, sheets) => sheets == 0,
                 (4, sheets) => sheets == 2,
                 _ => false,
             };
-            !known && aside.norm() <= OFF_CENTER * local.radius
+            !known && aside.norm() <= tuning.off_center * radius
         })?;
         let off = || points.iter().enumerate().map(|(row, x)| book.off(row, x));
         let residual = (self.tolerance).residual(off().map(|d| d * d).sum(), points.len())?;
         let off: Vec<f64> = off().collect();
-        curve_end::follows(off.into_iter(), residual, self.tolerance.ep)?;
-        book.are_held(points, LEAST_SHARE)?;
+        curve_end::follows(off.into_iter(), residual, self.tolerance.ep, &tuning.end)?;
+        book.are_held(points, tuning.share)?;
         Ok(Fit {
             all,
             book,
             residual,
             ep: self.tolerance.ep,
-            radius: local.radius,
+            radius,
             fitted: local.fitted,
+            tuning: self.tuning,
         })
     }
 }
@@ -80,6 +79,7 @@ struct Fit {
     ep: f64,
     radius: f64,
     fitted: usize,
+    tuning: BookTuning,
 }
 
 impl Fit {
@@ -90,9 +90,10 @@ impl Fit {
         let d = x - pages.place;
         let aside = d - pages.along * pages.along.dot(&d);
         // The curve is no farther from the line than it bends within the ball.
-        let near = aside.norm() < STEP * self.radius;
-        let place = self.book.meet(x, STEP * self.radius).filter(|_| near)?;
-        ((place - x).norm() < WITNESS_REACH * self.ep).then_some(place)
+        let step = self.tuning.step * self.radius;
+        let near = aside.norm() < step;
+        let place = self.book.meet(x, step).filter(|_| near)?;
+        ((place - x).norm() < self.tuning.witness * self.ep).then_some(place)
     }
 
     fn label(&self, row: usize) -> u8 {
@@ -108,7 +109,8 @@ impl Fit {
         let pages = 0..self.book.count();
         pages.into_iter().all(|page| {
             self.all[..self.fitted].iter().enumerate().any(|(row, x)| {
-                (x - place).norm() < SUPPORT * self.radius && self.book.page(row, x) == page
+                (x - place).norm() < self.tuning.support * self.radius
+                    && self.book.page(row, x) == page
             })
         })
     }
