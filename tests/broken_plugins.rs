@@ -19,9 +19,9 @@ use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::execute::Execute;
 use crosscap_core::{
     BallDimension, Balls, Chart, ChartTriangle, CompatibilityTest, CurveEdge, Decomposition,
-    DimensionEstimate, Incomplete, Landmark, LocalPoints, Located, Meeting, Neighbor, Neighborhood,
-    Rejection, Row, StratifiedLandmarks, TriangleRule, Triangulation, TriangulationCounts,
-    Triangulator,
+    DimensionEstimate, Incomplete, Label, Landmark, LocalPoints, Located, Meeting, Neighbor,
+    Neighborhood, Rejection, Row, StratifiedLandmarks, TriangleRule, Triangulation,
+    TriangulationCounts, Triangulator,
 };
 
 const NAME: &str = "the-broken-one";
@@ -636,10 +636,10 @@ fn models() {
     spoilt("partition", |fit, _| {
         fit.labels.pop();
     });
-    spoilt("partition", |fit, _| fit.labels.push(1));
+    spoilt("partition", |fit, _| fit.labels.push(Label::new(1)));
     spoilt("partition", |fit, _| {
         if let Some(label) = fit.labels.last_mut() {
-            *label = 200;
+            *label = Label::new(200);
         }
     });
     spoilt("partition", |fit, _| fit.strata.truncate(2));

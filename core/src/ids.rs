@@ -100,6 +100,14 @@ id! {
     pub struct Landmark(u32);
 }
 
+id! {
+    /// Which stratum of a decomposition a point is in, by its place in the list of strata. It is neither a dimension nor
+    /// a number of cells, which are small numbers too.
+    #[derive(Serialize, Deserialize)]
+    #[serde(transparent)]
+    pub struct Label(u8);
+}
+
 /// One entry for every thing of a kind, in the order of their ids: a list that only that kind of id can ask.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]

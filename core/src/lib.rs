@@ -19,7 +19,7 @@
 //! | triangles on landmarks | [`Triangulator`] |
 //! | the result | [`Complex`], [`Mesh`] |
 //! | many jobs at once | [`execute`] |
-//! | numbers that name things | [`Row`], [`Landmark`], [`Table`] |
+//! | numbers that name things | [`Row`], [`Landmark`], [`Label`], [`Table`] |
 
 mod balls;
 mod cell;
@@ -56,7 +56,7 @@ pub use dimension::DimensionEstimator;
 pub use distances::SparseDistances;
 pub use error::Error;
 pub use estimate::DimensionEstimate;
-pub use ids::{Id, Landmark, Row, Table};
+pub use ids::{Id, Label, Landmark, Row, Table};
 pub use landmarks::LandmarkSelector;
 pub use link::{Link, LinkKind};
 pub use local::LocalPoints;

@@ -139,7 +139,7 @@ pub trait SingularityModel: Sync {
                 };
                 let fit = self.decompose(&own).ok()?;
                 // Not every model keeps its labels in range.
-                let label = usize::from(*fit.labels.get(row)?);
+                let label = fit.labels.get(row)?.index();
                 (label < fit.strata.len()).then(|| fit.located(row))
             })
             .collect();

@@ -6,7 +6,7 @@ use super::patch::PATCH_POINTS;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::two_planes::PlanePair;
 use crosscap_core::{
-    Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
+    Decomposition, Error, Label, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
 use nalgebra::Vector3;
 
@@ -29,6 +29,8 @@ const LEAST_SHARE: f64 = 0.04;
 const STEP: f64 = 0.6;
 /// A point off the curve tells where it is up to this many ep.
 const WITNESS_REACH: f64 = 3.0;
+/// The label of the curve; those of the pages follow.
+const CURVE: Label = Label::new(0);
 /// Every page has a point this close to a place on the curve, in radii.
 const SUPPORT: f64 = 0.6;
 
@@ -121,11 +123,11 @@ impl Fit {
         ((place - x).norm() < WITNESS_REACH * self.ep).then_some(place)
     }
 
-    fn label(&self, row: usize) -> u8 {
+    fn label(&self, row: usize) -> Label {
         let x = self.all[row];
         match self.on_curve(row) {
-            Some(place) if (place - x).norm() < self.ep => 0,
-            _ => 1 + self.book.page(row, &x) as u8,
+            Some(place) if (place - x).norm() < self.ep => CURVE,
+            _ => Label::new(1 + self.book.page(row, &x)),
         }
     }
 
@@ -142,7 +144,7 @@ impl Fit {
     fn locate(&self, row: usize) -> Option<Located> {
         let x = self.all[row];
         let place = self.on_curve(row).filter(|p| self.is_supported(p));
-        let on = self.label(row) == 0;
+        let on = self.label(row) == CURVE;
         if on && place.is_none() {
             return None;
         }
@@ -242,11 +244,11 @@ mod tests {
             let mut seen = vec![None; turns.len()];
             for (x, &label) in places.chunks_exact(3).zip(&fit.labels) {
                 let from = x[0].hypot(x[1]);
-                assert_eq!(label == 0, from < 0.1, "{x:?}");
-                if label > 0 {
+                assert_eq!(label == CURVE, from < 0.1, "{x:?}");
+                if label > CURVE {
                     let turn = x[1].atan2(x[0]).rem_euclid(TAU);
                     let page = (turns.iter()).position(|t| (t - turn).abs() < 1e-6);
-                    let known = seen[usize::from(label) - 1].get_or_insert(page);
+                    let known = seen[label.index() - 1].get_or_insert(page);
                     assert_eq!(*known, page, "{x:?}");
                 }
             }

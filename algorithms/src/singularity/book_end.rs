@@ -322,7 +322,7 @@ impl SingularityModel for BookEnd {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crosscap_core::LinkKind;
+    use crosscap_core::{Label, LinkKind};
     use std::f64::consts::{PI, TAU};
 
     const RADIUS: f64 = 1.0;
@@ -393,7 +393,7 @@ mod tests {
             let link = model().link_of(&fit).unwrap();
             assert_eq!(link.kind(), kind, "{book:?}");
             assert_eq!(link.degree(0), book.len());
-            for label in 0..fit.strata.len() as u8 {
+            for label in (0..fit.strata.len()).map(Label::new) {
                 assert!(fit.labels.contains(&label), "{book:?}: {label}");
             }
         }

@@ -4,7 +4,9 @@ use super::envelope::Envelope;
 use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::tolerance::{Tolerance, at_least, vectors};
 use crate::tuning::BoundaryTuning;
-use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{
+    Decomposition, Error, Label, LocalPoints, Rejection, SingularityModel, Stratum,
+};
 use nalgebra::{Matrix2, Vector2, Vector3};
 use std::f64::consts::PI;
 
@@ -210,7 +212,7 @@ impl SingularityModel for Boundary {
             };
         Ok(Decomposition {
             strata: [1, 2].map(|dimension| Stratum { dimension }).to_vec(),
-            labels,
+            labels: labels.into_iter().map(Label::from).collect(),
             cells_at_curve: vec![1],
             residual,
             parameters: 11,

@@ -8,7 +8,7 @@ use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crate::tuning::CurveAndSheetTuning;
 use crosscap_core::{
-    Decomposition, Error, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
+    Decomposition, Error, Label, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
 };
 use nalgebra::Vector3;
 use std::cell::RefCell;
@@ -315,7 +315,7 @@ impl Fit {
             labels: self
                 .labels
                 .iter()
-                .map(|&l| relabel[usize::from(l)])
+                .map(|&l| Label::from(relabel[usize::from(l)]))
                 .collect(),
             cells_at_curve: vec![0; usize::from(arcs)],
             residual: self.residual,

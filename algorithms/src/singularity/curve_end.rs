@@ -1,7 +1,7 @@
 //! What the models of the ends of double curves have in common: when they are believed, and what they say of rows.
 
 use super::patch::off_one_sheet;
-use crosscap_core::{Decomposition, LocalPoints, Located, Rejection, Stratum};
+use crosscap_core::{Decomposition, Label, LocalPoints, Located, Rejection, Stratum};
 use nalgebra::Vector3;
 
 /// Greatest share of the points farther than ep from the surface.
@@ -87,7 +87,9 @@ pub(super) trait CurveEnd {
         let strata = self.strata().iter();
         let decomposition = Decomposition {
             strata: strata.map(|&dimension| Stratum { dimension }).collect(),
-            labels: (0..local.len()).map(|row| self.locate(row).0).collect(),
+            labels: (0..local.len())
+                .map(|row| Label::from(self.locate(row).0))
+                .collect(),
             cells_at_curve: self.cells().to_vec(),
             residual: self.residual(),
             parameters: self.parameters(),

@@ -7,7 +7,7 @@ use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crate::tuning::IsolatedCrossingTuning;
 use crosscap_core::{
-    Decomposition, Error, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
+    Decomposition, Error, Label, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
 };
 use nalgebra::{Matrix4, Vector4};
 
@@ -167,7 +167,7 @@ impl SingularityModel for IsolatedCrossing {
         let at_point = labels[local.center] == 0;
         Ok(Decomposition {
             strata: [0, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
-            labels,
+            labels: labels.into_iter().map(Label::from).collect(),
             cells_at_curve: Vec::new(),
             residual,
             parameters: 24,

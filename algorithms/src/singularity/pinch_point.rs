@@ -254,10 +254,11 @@ mod tests {
             "{:?}",
             fit.points
         );
-        assert_eq!(fit.labels[0], POINT);
+        assert_eq!(fit.labels[0].index(), usize::from(POINT));
         // Two points are in one cell where u and v have the same signs, and there are four cells.
         let mut sides = [None; 4];
-        for (x, &label) in places.chunks_exact(3).zip(&fit.labels) {
+        for (x, label) in places.chunks_exact(3).zip(&fit.labels) {
+            let label = label.index() as u8;
             if label >= FIRST_CELL {
                 let side = (x[0] * x[1] > 0.0, x[1] > 0.0);
                 let known = sides[usize::from(label - FIRST_CELL)].get_or_insert(side);

@@ -7,7 +7,7 @@ use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crate::tuning::TriplePointTuning;
 use crosscap_core::{
-    Decomposition, Error, Link, LinkKind, LocalPoints, Located, Rejection, SingularityModel,
+    Decomposition, Error, Label, Link, LinkKind, LocalPoints, Located, Rejection, SingularityModel,
     Stratum,
 };
 use nalgebra::{Matrix3, Vector3};
@@ -161,7 +161,7 @@ impl SingularityModel for TriplePoint {
             points: vec![apex.iter().copied().collect()],
             center: center.place,
             center_offset: center.offset,
-            labels,
+            labels: labels.into_iter().map(Label::from).collect(),
         };
         Ok((decomposition, located))
     }

@@ -4,7 +4,7 @@ use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::tolerance::{Tolerance, at_least, vectors};
 use crate::tuning::TwoPlanesTuning;
 use crosscap_core::{
-    Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
+    Decomposition, Error, Label, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, Vector4};
 
@@ -495,7 +495,7 @@ impl SingularityModel for TwoPlanes {
             points: Vec::new(),
             center: center.place,
             center_offset: center.offset,
-            labels: fit.labels,
+            labels: fit.labels.into_iter().map(Label::from).collect(),
         };
         Ok((decomposition, located))
     }

@@ -7,7 +7,7 @@ use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crate::tuning::YJunctionTuning;
 use crosscap_core::{
-    Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
+    Decomposition, Error, Label, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -201,7 +201,7 @@ impl SingularityModel for YJunction {
             points: Vec::new(),
             center: center.place,
             center_offset: center.offset,
-            labels,
+            labels: labels.into_iter().map(Label::from).collect(),
         };
         Ok((decomposition, located))
     }

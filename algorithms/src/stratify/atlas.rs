@@ -3,7 +3,7 @@
 use super::analysis::{Fitter, Scratch};
 use super::strata::Strata;
 use crate::execute;
-use crosscap_core::{Decomposition, Row, Scalar};
+use crosscap_core::{Decomposition, Label, Row, Scalar};
 use std::collections::BTreeMap;
 
 /// A fit about a point on a curve or point, with the labels of the rows around it.
@@ -12,7 +12,7 @@ pub(super) struct Reference {
     /// Its row.
     pub(super) row: Row,
     /// Rows in its ball with their labels, by row.
-    labels: Vec<(Row, u8)>,
+    labels: Vec<(Row, Label)>,
     /// Radius of the fit.
     pub(super) radius: f64,
     /// The strata, without the labels.
@@ -21,24 +21,24 @@ pub(super) struct Reference {
 
 impl Reference {
     /// The label of a row.
-    pub(super) fn label(&self, row: Row) -> Option<u8> {
+    pub(super) fn label(&self, row: Row) -> Option<Label> {
         let at = self.labels.binary_search_by_key(&row, |x| x.0).ok()?;
         Some(self.labels[at].1)
     }
 
     /// The rows that are labelled, with their labels.
-    pub(super) fn labels(&self) -> &[(Row, u8)] {
+    pub(super) fn labels(&self) -> &[(Row, Label)] {
         &self.labels
     }
 
     /// Whether `label` names a 0-stratum.
-    pub(super) fn is_point(&self, label: u8) -> bool {
-        self.fit.strata[label as usize].dimension == 0
+    pub(super) fn is_point(&self, label: Label) -> bool {
+        self.fit.is_of(label, 0)
     }
 
     /// Whether `label` names a curve.
-    pub(super) fn is_curve(&self, label: u8) -> bool {
-        self.fit.strata[label as usize].dimension == 1
+    pub(super) fn is_curve(&self, label: Label) -> bool {
+        self.fit.is_of(label, 1)
     }
 
     /// Whether the model knows of 0-strata.
@@ -47,8 +47,8 @@ impl Reference {
     }
 
     /// Whether `label` names a cell.
-    pub(super) fn is_cell(&self, label: u8) -> bool {
-        self.fit.strata[label as usize].dimension == 2
+    pub(super) fn is_cell(&self, label: Label) -> bool {
+        self.fit.is_of(label, 2)
     }
 }
 
@@ -90,7 +90,7 @@ impl Atlas {
                     });
                 }
                 let (mut fit, near, radius) = fitter.decomposition(strata, new[k], scratch)?;
-                let mut labels: Vec<(Row, u8)> =
+                let mut labels: Vec<(Row, Label)> =
                     (near.into_iter().zip(std::mem::take(&mut fit.labels))).collect();
                 labels.sort_unstable();
                 Some(Reference {

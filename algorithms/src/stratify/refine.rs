@@ -91,7 +91,8 @@ impl<S: Scalar> Refinement<'_, S> {
     /// Rows that should be landmarks as well: points that a mesh leaves behind, at an edge or a tip that its triangles
     /// cut off; the farthest first. `heights` are the distances of all points from the mesh, unit of the data.
     ///
-    /// Points without company are outliers and stay where they are. None where the space has no coordinates.
+    /// Points without company are outliers and stay where they are: a surface that goes out to a point, be it to a tip, has
+    /// points nearer to it than the mesh is. None where the space has no coordinates.
     /// O(n + f (log n + L)) for n points, f of them far from the mesh, and L landmarks.
     pub fn rows_left_behind(&self, heights: &[f64]) -> Vec<Row> {
         let mut added = Vec::new();
@@ -117,14 +118,14 @@ impl<S: Scalar> Refinement<'_, S> {
         added
     }
 
-    /// Whether half of the nearest points of a row are at least half as far from the mesh as it is.
+    /// Whether a row has [company](has_company).
     fn has_company(&self, row: Row, heights: &[f64]) -> bool {
         let mut near: Vec<Neighbor<S>> = Vec::new();
         self.near
             .nearest(row.index(), self.tuning.company + 1, &mut near);
-        let others = near.iter().map(|x| x.index).filter(|&x| x != row.index());
-        let along = others.filter(|&other| heights[other] >= 0.5 * heights[row.index()]);
-        2 * along.count() >= self.tuning.company
+        let others = near.iter().filter(|x| x.index != row.index());
+        let others = others.map(|x| (x.distance.as_f64(), heights[x.index]));
+        has_company(heights[row.index()], others, self.tuning)
     }
 
     /// Whether a row may become a landmark: it lies in a cell, so far from all others and from those `added`.
@@ -137,6 +138,22 @@ impl<S: Scalar> Refinement<'_, S> {
         self.producer.may_add(row)
             && others.all(|r| places.squared_distance(r.index(), row.index()) >= limit)
     }
+}
+
+/// Whether a point is one of many, `height` away from a mesh: half of its nearest, each given by its distance from the point
+/// and its own height, are at least half as high, or are clearly nearer to the point than the mesh is. An outlier has no
+/// company: its nearest points are on the mesh. The unit of all lengths is that of the data.
+pub fn has_company(
+    height: f64,
+    nearest: impl Iterator<Item = (f64, f64)>,
+    tuning: &RefinementTuning,
+) -> bool {
+    let (mut along, mut beside) = (0, 0);
+    for (distance, other) in nearest {
+        along += usize::from(other >= 0.5 * height);
+        beside += usize::from(distance < tuning.nearer * height);
+    }
+    2 * along.max(beside) >= tuning.company
 }
 
 /// Distance of `x` from the plane through `middle` that is parallel to a triangle, in R^N.
@@ -165,6 +182,17 @@ fn off_plane<S: Scalar>(corners: [&[f64]; 3], middle: &[S], x: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_outlier_has_no_company_and_points_of_an_edge_or_a_tip_have() {
+        let tuning = RefinementTuning::MEASURED;
+        let has = |near: [(f64, f64); 4]| has_company(1.0, near.into_iter(), &tuning);
+        // Beside a sheet, with one other outlier near it.
+        assert!(!has([(0.4, 0.8), (1.0, 0.0), (1.1, 0.1), (1.2, 0.0)]));
+        // Along an edge that triangles pass below; at a tip, where the mesh is soon reached.
+        assert!(has([(0.5, 0.9), (0.6, 0.9), (0.8, 0.1), (0.9, 0.2)]));
+        assert!(has([(0.4, 0.4), (0.6, 0.3), (0.8, 0.1), (0.9, 0.0)]));
+    }
 
     #[test]
     fn how_far_a_point_is_off_the_plane_of_a_triangle() {

@@ -6,11 +6,16 @@
 
 mod front;
 mod models;
+mod preparation;
 
 pub use front::FrontTuning;
 pub use models::{
     BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,
     TwoPlanesTuning, YJunctionTuning,
+};
+
+pub use preparation::{
+    NoiseTuning, OutlierTuning, PreparationTuning, ProjectionTuning, ResolutionTuning,
 };
 
 use serde::Serialize;
@@ -255,6 +260,9 @@ pub struct RefinementTuning {
     /// Nearest points of one that is left behind, half of which are at least half as far from the mesh: an outlier
     /// has no such company.
     pub company: usize,
+    /// Share of its distance from the mesh within which the same half may be instead: at a tip, where the mesh is soon
+    /// reached, a point is alone so far from it. The nearest points of an outlier are on the mesh.
+    pub nearer: f64,
     /// Rounds of landmarks at points that are left behind.
     pub mends: usize,
 }
@@ -270,6 +278,7 @@ impl RefinementTuning {
         open_share: 0.01,
         behind: 0.6,
         company: 4,
+        nearer: 0.75,
         mends: 3,
     };
 }

@@ -4,7 +4,7 @@ use super::instances::{Draw, Instance};
 use super::motion::{Motion, motions};
 use super::trial::{Outcome, ensure};
 use super::{Failures, Findings, Law, Settings};
-use crate::{Decomposition, LocalPoints, Rejection, SingularityModel};
+use crate::{Decomposition, Label, LocalPoints, Rejection, SingularityModel, Table};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::ops::RangeInclusive;
@@ -169,7 +169,7 @@ fn cells_are_counted(d: &Decomposition, instance: &Instance) -> Outcome {
     let far = |a: &[f64], b: &[f64], share: f64| {
         crate::squared_distance(a, b) > (share * instance.radius).powi(2)
     };
-    for curve in 0..d.strata.len() as u8 {
+    for curve in d.labels_of(1) {
         let Some(said) = d.cells_at(curve) else {
             continue;
         };
@@ -180,7 +180,7 @@ fn cells_are_counted(d: &Decomposition, instance: &Instance) -> Outcome {
                 continue;
             }
             for (other, &label) in d.labels.iter().enumerate() {
-                near[usize::from(label)] |=
+                near[label.index()] |=
                     d.dimension_of(other) == 2 && !far(local.point(other), own, NEAR_CURVE);
             }
         }
@@ -238,12 +238,12 @@ fn same(
         b.center
     );
     // Names in the second of the strata of the first, and back.
-    let mut names: Vec<Option<u8>> = vec![None; a.strata.len()];
-    let mut back: Vec<Option<u8>> = vec![None; b.strata.len()];
+    let mut names: Table<Label, Option<Label>> = Table::filled(a.strata.len(), None);
+    let mut back: Table<Label, Option<Label>> = Table::filled(b.strata.len(), None);
     for (k, place) in pairs {
         let (old, new) = (a.labels[k], b.labels[place]);
-        let to = *names[old as usize].get_or_insert(new);
-        let from = *back[new as usize].get_or_insert(old);
+        let to = *names[old].get_or_insert(new);
+        let from = *back[new].get_or_insert(old);
         ensure!(
             to == new && from == old,
             "point {k} (then {place}) had the label {old} and has {new}, while others of {old} have {to} \
@@ -258,12 +258,13 @@ fn same(
         );
     }
     // Curves without points have no names to go by.
-    let first_curve = |d: &Decomposition| d.strata.iter().filter(|s| s.dimension == 0).count();
-    let (skip_a, skip_b) = (first_curve(a), first_curve(b));
-    for (k, &cells) in a.cells_at_curve.iter().enumerate() {
-        if let Some(new) = names[skip_a + k] {
-            let now = b.cells_at_curve[new as usize - skip_b];
-            ensure!(cells == now, "{cells} cells at a curve became {now}");
+    for old in a.labels_of(1) {
+        if let (Some(new), Some(cells)) = (names[old], a.cells_at(old)) {
+            let now = b.cells_at(new);
+            ensure!(
+                now == Some(cells),
+                "{cells} cells at a curve became {now:?}"
+            );
         }
     }
     Ok(())
@@ -330,7 +331,7 @@ fn about(model: &dyn SingularityModel, instance: &Instance, rows: &[usize]) -> O
 ///
 /// ```
 /// use crosscap_core::laws::{self, Instances, Settings, instances};
-/// use crosscap_core::{Decomposition, LocalPoints, Rejection, SingularityModel, Stratum};
+/// use crosscap_core::{Decomposition, Label, LocalPoints, Rejection, SingularityModel, Stratum};
 /// /// Everything is one flat cell.
 /// struct Flat;
 /// impl SingularityModel for Flat {
@@ -339,7 +340,7 @@ fn about(model: &dyn SingularityModel, instance: &Instance, rows: &[usize]) -> O
 ///         let heights = (0..local.fitted).map(|k| local.point(k)[2].powi(2)).sum::<f64>();
 ///         Ok(Decomposition {
 ///             strata: vec![Stratum { dimension: 2 }],
-///             labels: vec![0; local.len()],
+///             labels: vec![Label::new(0); local.len()],
 ///             residual: (heights / local.fitted as f64).sqrt(),
 ///             parameters: 3,
 ///             center: local.point(local.center).to_vec(),
@@ -569,7 +570,7 @@ fn laws(
                 "point {k} at {place:?} is of the true stratum {truth}, others of which have the label \
                  {known}; it has {label}"
             );
-            let known = *truth_of[label as usize].get_or_insert(truth);
+            let known = *truth_of[label.index()].get_or_insert(truth);
             ensure!(
                 known == truth,
                 "point {k} at {place:?} has the label {label} as points of the true stratum {known}; it \
@@ -654,7 +655,7 @@ mod tests {
                 Fault::UncountedCell => {
                     cells = 0;
                     for (k, label) in labels.iter_mut().enumerate() {
-                        *label = u8::from(norm(k) > 0.2 * radius);
+                        *label = usize::from(norm(k) > 0.2 * radius);
                     }
                 }
                 Fault::FittedLabels => labels.truncate(fitted),
@@ -664,7 +665,7 @@ mod tests {
                 }
                 Fault::SignOfAxis => {
                     for (k, label) in labels.iter_mut().enumerate() {
-                        *label = u8::from(local.point(k)[0] < 0.3 * radius);
+                        *label = usize::from(local.point(k)[0] < 0.3 * radius);
                     }
                 }
                 Fault::FirstRowIsCenter => center = local.point(0).to_vec(),
@@ -674,13 +675,14 @@ mod tests {
                     strata.push(Stratum { dimension: 2 });
                     cells = 2;
                     for (k, label) in labels.iter_mut().enumerate() {
-                        *label = 1 + u8::from(norm(k) > 0.6 * radius);
+                        *label = 1 + usize::from(norm(k) > 0.6 * radius);
                     }
                 }
                 Fault::Refusing if heights < 1e-12 => return Err(Rejection::NoRealSolution),
                 _ => {}
             }
-            let own = labels.get(local.center).map(|&l| usize::from(l));
+            let labels: Vec<Label> = labels.into_iter().map(Label::new).collect();
+            let own = labels.get(local.center).map(|l| l.index());
             if own.and_then(|l| strata.get(l)) == Some(&Stratum { dimension: 1 }) {
                 offset = 0.0;
             }

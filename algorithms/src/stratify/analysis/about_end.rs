@@ -4,7 +4,7 @@ use super::fitter::{Fitter, Scratch, View};
 use crate::audit;
 use crate::stratify::curve_ends::{EndRegion, Settled};
 use crate::stratify::site::{FitUsed, On, StratumKind};
-use crosscap_core::{Decomposition, Located, Neighbor, Rejection, Row, Scalar};
+use crosscap_core::{Decomposition, Label, Located, Neighbor, Rejection, Row, Scalar};
 
 /// A fit about an end.
 struct Shown {
@@ -122,8 +122,8 @@ impl<S: Scalar> Fitter<'_, S> {
         let engine = self.models[usize::from(used.model)].as_ref();
         let local = self.local(&view, engine, scratch);
         let labels = std::mem::take(&mut fit.labels);
-        let mut own: Vec<(Row, u8, Settled)> = Vec::new();
-        let mut beyond: Vec<(Row, u8)> = Vec::new();
+        let mut own: Vec<(Row, Label, Settled)> = Vec::new();
+        let mut beyond: Vec<(Row, Label)> = Vec::new();
         for (k, located) in located.into_iter().enumerate() {
             let row = rows[k];
             let far = self.far(row, &place);

@@ -7,7 +7,7 @@ use crate::stratify::atlas::Reference;
 use crate::stratify::skeleton::Skeleton;
 use crate::stratify::strata::Strata;
 use crate::tuning::CellTuning;
-use crosscap_core::{Landmark, Neighbor, PointCloud, Row, Scalar, Table};
+use crosscap_core::{Label, Landmark, Neighbor, PointCloud, Row, Scalar, Table};
 
 /// A flood, and what of the contacts it reached.
 pub(super) struct Hits {
@@ -112,13 +112,13 @@ impl Contacts {
         fit: Option<&Reference>,
         row: Row,
         near: &[Neighbor<S>],
-    ) -> Vec<Vec<(u8, f64, Row)>> {
-        let mut cells: Vec<(u8, f64, Row)> = near
+    ) -> Vec<Vec<(Label, f64, Row)>> {
+        let mut cells: Vec<(Label, f64, Row)> = near
             .iter()
             .filter(|x| strata.is_regular(x.row()))
             .filter_map(|x| {
                 let label = match fit {
-                    None => 0,
+                    None => Label::default(),
                     Some(r) => r.label(x.row()).filter(|&l| r.is_cell(l))?,
                 };
                 let square = places.squared_distance(row.index(), x.index);

@@ -118,7 +118,7 @@ fn link_wards(links: &mut [Links], strata: &Strata, node_of: &Table<Row, Node>) 
         return;
     };
     for region in strata.regions() {
-        for cell in (0..region.fit.strata.len() as u8).filter(|&l| region.is_cell(l)) {
+        for cell in region.fit.labels_of(2) {
             let own = region.labels.iter().filter(|x| x.1 == cell);
             let own = own.map(|x| x.0).filter(|&row| node_of[row] != Node::NONE);
             let rows: Vec<Row> = own.collect();

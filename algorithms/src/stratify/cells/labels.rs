@@ -3,7 +3,7 @@
 use super::Labelling;
 use crate::execute::{self, Execute};
 use crate::stratify::atlas::Reference;
-use crosscap_core::{PointCloud, Row, Table, squared_distance};
+use crosscap_core::{Label, PointCloud, Row, Table, squared_distance};
 
 /// Fits that a job takes at a time.
 const FITS_AT_ONCE: usize = 8;
@@ -12,7 +12,7 @@ const FITS_AT_ONCE: usize = 8;
 pub(in crate::stratify) struct Labels {
     nearest: Table<Row, Option<Labelling>>,
     closest: Table<Row, f64>,
-    own: Table<Row, u8>,
+    own: Table<Row, Label>,
 }
 
 impl Labels {
@@ -28,7 +28,7 @@ impl Labels {
         let mut labels = Self {
             nearest: Table::filled(count, None),
             closest: Table::filled(count, f64::INFINITY),
-            own: Table::filled(count, 0),
+            own: Table::filled(count, Label::default()),
         };
         let Some(places) = places else {
             return labels;

@@ -3,15 +3,15 @@
 use super::Answer;
 use crate::stratify::site::On;
 use crate::stratify::strata::Strata;
-use crosscap_core::{Decomposition, PointCloud, Row, Scalar, squared_distance};
+use crosscap_core::{Decomposition, Label, PointCloud, Row, Scalar, squared_distance};
 
 /// A point at which a curve ends, with the points about it.
 #[derive(Clone, Debug)]
 pub(in crate::stratify) struct EndRegion {
     /// Rows of the region with their labels, by row.
-    pub(in crate::stratify) labels: Vec<(Row, u8)>,
+    pub(in crate::stratify) labels: Vec<(Row, Label)>,
     /// Rows beyond it with the labels that they have by its fit.
-    beyond: Vec<(Row, u8)>,
+    beyond: Vec<(Row, Label)>,
     /// The strata, without the labels.
     pub(in crate::stratify) fit: Decomposition,
     /// Place of the point.
@@ -33,7 +33,7 @@ impl EndRegion {
     /// The rows nearer than `reach` to `place`, each with its label and by row, some beyond, and the strata that the
     /// labels name.
     pub(in crate::stratify) fn new(
-        [labels, beyond]: [Vec<(Row, u8)>; 2],
+        [labels, beyond]: [Vec<(Row, Label)>; 2],
         fit: Decomposition,
         place: Vec<f64>,
         reach: f64,
@@ -48,14 +48,14 @@ impl EndRegion {
     }
 
     /// Rows with their labels, by row: those of the region, and those beyond.
-    pub(in crate::stratify) fn known(&self) -> Vec<(Row, u8)> {
+    pub(in crate::stratify) fn known(&self) -> Vec<(Row, Label)> {
         let mut all = [&self.labels[..], &self.beyond[..]].concat();
         all.sort_unstable();
         all
     }
 
     /// The label of a row.
-    pub(in crate::stratify) fn label(&self, row: Row) -> Option<u8> {
+    pub(in crate::stratify) fn label(&self, row: Row) -> Option<Label> {
         let at = self.labels.binary_search_by_key(&row, |x| x.0).ok()?;
         Some(self.labels[at].1)
     }
@@ -66,8 +66,8 @@ impl EndRegion {
     }
 
     /// Whether a label names a cell.
-    pub(in crate::stratify) fn is_cell(&self, label: u8) -> bool {
-        self.fit.strata[usize::from(label)].dimension == 2
+    pub(in crate::stratify) fn is_cell(&self, label: Label) -> bool {
+        self.fit.is_of(label, 2)
     }
 
     /// How far a place is from the point.
@@ -100,7 +100,7 @@ pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer], ove
     for (answer, limit) in answers.iter_mut().zip(limits) {
         let region = &mut answer.region;
         if limit < region.reach {
-            let far = |x: &(Row, u8)| region.far(cloud, x.0);
+            let far = |x: &(Row, Label)| region.far(cloud, x.0);
             let (own, mut beyond): (Vec<_>, Vec<_>) =
                 (region.known().into_iter()).partition(|x| far(x) < limit);
             beyond.retain(|x| far(x) < limit + overlap * answer.eps);
@@ -126,7 +126,7 @@ pub(in crate::stratify) fn innermost(strata: &Strata, within: f64) -> Vec<Row> {
             let squares = squares.map(|c| places.squared_distance(row.index(), c.index()));
             squares.fold(f64::INFINITY, f64::min)
         };
-        for label in (0..region.fit.strata.len() as u8).filter(|&l| region.is_cell(l)) {
+        for label in region.fit.labels_of(2) {
             let own = region.labels.iter().filter(|x| x.1 == label);
             let near = own.map(|x| x.0).filter(|&row| {
                 strata.is_regular(row) && region.distance(places.point(row.index())) < within
@@ -160,7 +160,7 @@ mod tests {
             .map(Row::new)
             .filter(|&r| region.far(cloud, r) < reach)
             .collect();
-        region.labels = rows.iter().map(|&r| (r, 0)).collect();
+        region.labels = rows.iter().map(|&r| (r, Label::new(0))).collect();
         let settled = |&row: &Row| Settled {
             row,
             on: None,
@@ -196,7 +196,9 @@ mod tests {
         let known = answers.each_ref().map(|a| a.region.known());
         for row in [9, 11] {
             assert!(
-                known[..2].iter().all(|k| k.contains(&(Row::new(row), 0))),
+                known[..2]
+                    .iter()
+                    .all(|k| k.contains(&(Row::new(row), Label::new(0)))),
                 "{row}"
             );
         }

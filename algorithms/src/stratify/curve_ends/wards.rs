@@ -1,7 +1,7 @@
 //! Floods that keep to a cell about the end of a curve.
 
 use crate::stratify::strata::Strata;
-use crosscap_core::{Row, Table};
+use crosscap_core::{Label, Row, Table};
 
 /// Which cell of which region every row is in: a flood that starts well inside one does not come back to
 /// the others by a way around the ends of the curves between them.
@@ -16,7 +16,7 @@ pub(in crate::stratify) struct Wards<'a> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::stratify) struct Ward {
     region: u32,
-    cell: u8,
+    cell: Label,
 }
 
 impl<'a> Wards<'a> {

@@ -5,7 +5,7 @@ use super::nodes::Nodes;
 use super::sweep::components;
 use super::{Ground, Skeleton};
 use crate::stratify::site::StratumKind;
-use crosscap_core::{Row, Scalar, Table};
+use crosscap_core::{Label, Row, Scalar, Table};
 
 /// Nodes and corners, joined where a curve goes from one to the other.
 pub(super) struct CurveGraph {
@@ -55,7 +55,7 @@ impl CurveGraph {
                     members.iter().all(near)
                 })
                 .collect();
-            let mut branches: Vec<(u8, usize, f64)> = Vec::new();
+            let mut branches: Vec<(Label, usize, f64)> = Vec::new();
             for (k, &row) in rows.iter().enumerate() {
                 let d = ground.distance(corner, row);
                 if d > reach || stub[part[k]] {
@@ -79,8 +79,9 @@ impl CurveGraph {
         }
     }
 
-    /// The branch of a corner that a node is on; `None` for a node that is on none.
-    fn branch(&self, skeleton: &Skeleton, corner: Row, node: usize) -> Option<u8> {
+    /// The branch of a corner that a node is on; `None` for a node that is on none. Where the fit about the corner tells no
+    /// branches apart, all are one.
+    fn branch(&self, skeleton: &Skeleton, corner: Row, node: usize) -> Option<Label> {
         let at_point = || {
             skeleton
                 .corner_fits()
@@ -90,7 +91,7 @@ impl CurveGraph {
             (StratumKind::Boundary, found) => found.map(|(_, l)| l),
             (_, Some((at, l))) if skeleton.corner_fit(at).row == corner => Some(l),
             _ if at_point() => None,
-            _ => Some(0),
+            _ => Some(Label::default()),
         }
     }
 

@@ -3,10 +3,10 @@
 use super::thin::thin;
 use super::{Ground, Skeleton};
 use crate::stratify::site::StratumKind;
-use crosscap_core::{Row, Scalar};
+use crosscap_core::{Label, Row, Scalar};
 
 /// The branch of a curve at a corner: the position of the fit about the corner, and its label.
-pub(super) type Branch = (usize, u8);
+pub(super) type Branch = (usize, Label);
 
 /// Thinned points of a kind of curve.
 pub(super) struct Nodes {
