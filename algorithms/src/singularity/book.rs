@@ -181,9 +181,7 @@ impl SingularityModel for Book {
         });
         let decomposition = Decomposition {
             strata: strata.collect(),
-            labels: (0..local.len())
-                .map(|row| Label::from(fit.label(row)))
-                .collect(),
+            labels: (0..local.len()).map(|row| fit.label(row)).collect(),
             cells_at_curve: vec![count as u8],
             residual: fit.residual,
             // Besides the patches the direction and the place of the line.
