@@ -102,6 +102,12 @@ pub trait SingularityModel: Sync {
         None
     }
 
+    /// The link of the 0-strata of one of its own decompositions: for a model that knows several kinds of points, and can
+    /// tell from the strata which of them it found.
+    fn link_of(&self, _fit: &Decomposition) -> Option<Link> {
+        self.link()
+    }
+
     /// Fits the model.
     ///
     /// # Errors

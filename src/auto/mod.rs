@@ -52,7 +52,7 @@ pub struct Auto {
 }
 
 /// Attempts at most, where nothing is said.
-pub const USUAL_TRIES: usize = 6;
+pub const USUAL_TRIES: usize = 7;
 
 impl Default for Auto {
     fn default() -> Self {

@@ -46,7 +46,7 @@ impl Fault {
     pub const ROWS: usize = 60;
 }
 
-/// The faults of an outcome that is not handed over, those of most places first.
+/// The faults of an outcome that is not handed over: those with a known cause first, and of these those of most places.
 pub(super) fn faults(
     outcome: &Result<Outcome, Error>,
     doubt: Option<&Doubt>,
@@ -84,9 +84,11 @@ pub(super) fn faults(
             }
         }
     }
+    // A star that stays open says nothing where something else says why.
     faults.sort_by_key(|fault| {
         (
             !fault.kind.is_of_the_whole(),
+            fault.kind == FaultKind::Unresolved,
             std::cmp::Reverse(fault.count),
         )
     });
@@ -100,7 +102,10 @@ fn judged(trouble: &Trouble, oracle: Option<&EuclideanOracle<f64>>) -> Fault {
         .zip(oracle)
         .and_then(|(row, oracle)| Surroundings::of(oracle, row));
     let (kind, measure) = match (trouble.kind, around.map(|a| (a, a.look()))) {
-        (Some(FaultKind::TooFewPoints), _) => (FaultKind::TooFewPoints, trouble.measure),
+        (Some(kind @ (FaultKind::TooFewPoints | FaultKind::Gap | FaultKind::Merged)), _) => {
+            (kind, trouble.measure)
+        }
+        (_, Some((_, Look::Alone))) => (FaultKind::Outliers, trouble.measure),
         (_, Some((a, Look::Bent))) => (FaultKind::Curvature, Some(a.wanted())),
         (_, Some((a, Look::Noisy))) => (FaultKind::Noise, Some(a.thickness / a.spacing)),
         (_, Some((a, Look::Solid))) => (FaultKind::Dimension, Some(a.growth)),

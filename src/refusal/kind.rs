@@ -25,6 +25,10 @@ pub enum FaultKind {
     Unconfirmed,
     /// The surface ends where nothing was found that ends.
     Ends,
+    /// The mesh covers places that the points leave empty, more than chance explains.
+    Gap,
+    /// Two sheets of points are one in the mesh.
+    Merged,
     /// Coordinates are rounded to a step that is not small against the spacing of the points.
     Precision,
     /// Nothing is seen in the points themselves: the landmarks or the charts failed.
@@ -52,6 +56,8 @@ impl FaultKind {
             Self::TwoReadings => "the points do not decide",
             Self::Unconfirmed => "what was found was not found again",
             Self::Ends => "the mesh ends where nothing was found that ends",
+            Self::Gap => "the mesh covers gaps of the points",
+            Self::Merged => "two sheets of points are one in the mesh",
             Self::Precision => {
                 "coordinates are rounded to a step that is not small against the spacing"
             }

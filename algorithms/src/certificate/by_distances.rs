@@ -53,6 +53,7 @@ pub fn certify_by_distances<S: Scalar>(
         &incidence,
         options.closed,
         options.limits.shortest_boundary,
+        &|_| false,
     ));
     certificate.links = Some(links::check(
         mesh,

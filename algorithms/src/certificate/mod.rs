@@ -116,12 +116,6 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
         .collect();
     let frame = frame::Frame::new(&mesh.vertices, options.points);
     let quality = quality::check(mesh, &incidence, &options.limits);
-    certificate.edges = Some(edges::check(
-        mesh,
-        &incidence,
-        options.closed,
-        options.limits.shortest_boundary,
-    ));
     certificate.links = Some(links::check(
         mesh,
         &incidence,
@@ -153,6 +147,22 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
         .as_ref()
         .zip(ground.as_ref())
         .map(|(feet, ground)| Search::new(mesh, &incidence, feet, ground, of));
+    let opening = options
+        .faithful
+        .then_some(())
+        .and(search.as_ref())
+        .zip(points);
+    certificate.edges = Some(edges::check(
+        mesh,
+        &incidence,
+        options.closed,
+        options.limits.shortest_boundary,
+        &|part| {
+            opening.is_some_and(|(search, points)| {
+                search.is_opening(points, part, options.limits.significance)
+            })
+        },
+    ));
     certificate.cover = Some(cover::check(
         mesh,
         search.as_ref(),

@@ -41,11 +41,11 @@ pub(super) fn follows(
 /// A neighborhood of the end of a double curve, with what was fitted to it.
 pub(super) trait CurveEnd {
     /// Dimension of the stratum of every label.
-    const STRATA: &'static [u8];
+    fn strata(&self) -> &[u8];
     /// How many cells meet at the strata that are curves, by label.
-    const CELLS: &'static [u8];
+    fn cells(&self) -> &[u8];
     /// Numbers that were fitted.
-    const PARAMETERS: usize;
+    fn parameters(&self) -> usize;
 
     /// The points.
     fn points(&self) -> &[Vector3<f64>];
@@ -61,7 +61,7 @@ pub(super) trait CurveEnd {
     /// What is said of a row: a place on a curve where it is on one or near one.
     fn located(&self, row: usize) -> Located {
         let (label, place, cells) = self.locate(row);
-        let dimension = Self::STRATA[usize::from(label)];
+        let dimension = self.strata()[usize::from(label)];
         let own = self.points()[row];
         let offset = (place - own).norm();
         let (place, offset) = match dimension < 2 || offset < WITNESS_REACH * self.ep() {
@@ -84,15 +84,15 @@ pub(super) trait CurveEnd {
     ) -> (Decomposition, Vec<Option<Located>>) {
         let center = self.located(local.center);
         let located = rows.iter().map(|&row| Some(self.located(row))).collect();
-        let strata = Self::STRATA.iter();
+        let strata = self.strata().iter();
         let decomposition = Decomposition {
             strata: strata.map(|&dimension| Stratum { dimension }).collect(),
             labels: (0..local.len())
                 .map(|row| Label::from(self.locate(row).0))
                 .collect(),
-            cells_at_curve: Self::CELLS.to_vec(),
+            cells_at_curve: self.cells().to_vec(),
             residual: self.residual(),
-            parameters: Self::PARAMETERS,
+            parameters: self.parameters(),
             points: vec![self.end().iter().copied().collect()],
             center: center.place,
             center_offset: center.offset,

@@ -1,8 +1,9 @@
 //! Singularity models.
 
+mod book;
+mod book_end;
 mod boundary;
 mod choice;
-mod crossing_end;
 mod curve;
 mod curve_and_sheet;
 mod curve_end;
@@ -10,6 +11,8 @@ mod curve_fit;
 mod envelope;
 mod flats;
 mod isolated_crossing;
+mod page_sheets;
+mod pages;
 mod patch;
 mod pinch_map;
 mod pinch_point;
@@ -22,9 +25,10 @@ mod triple_point;
 mod two_planes;
 mod vanishing;
 mod y_junction;
+pub use book::Book;
+pub use book_end::BookEnd;
 pub use boundary::Boundary;
 pub use choice::ModelName;
-pub use crossing_end::CrossingEnd;
 pub use curve::BareCurve;
 pub use curve_and_sheet::{CurveOnSheet, CurveThroughSheet};
 pub use isolated_crossing::IsolatedCrossing;

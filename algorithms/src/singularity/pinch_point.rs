@@ -137,9 +137,17 @@ impl Fit {
 }
 
 impl CurveEnd for Fit {
-    const STRATA: &'static [u8] = &[0, 1, 1, 1, 2, 2, 2, 2];
-    const CELLS: &'static [u8] = &[4, 2, 2];
-    const PARAMETERS: usize = PinchMap::PARAMETERS;
+    fn strata(&self) -> &[u8] {
+        &[0, 1, 1, 1, 2, 2, 2, 2]
+    }
+
+    fn cells(&self) -> &[u8] {
+        &[4, 2, 2]
+    }
+
+    fn parameters(&self) -> usize {
+        PinchMap::PARAMETERS
+    }
 
     fn points(&self) -> &[Vector3<f64>] {
         &self.all

@@ -69,12 +69,6 @@ impl Sheets {
         }
     }
 
-    /// Sine of the angle of the first two patches at a place.
-    pub(super) fn sine(&self, place: &Vector3<f64>) -> f64 {
-        let [a, b] = [0, 1].map(|k| self.patches[k].height(place).1.normalize());
-        a.cross(&b).norm()
-    }
-
     /// The point nearest to `start`, to first order, in which all the patches named meet, normals
     /// spanning `rank` directions: 2 for a curve, 3 for a point. Newton with steps of least norm;
     /// `None` when it wanders farther than `reach`, or when the normals span another number of directions.

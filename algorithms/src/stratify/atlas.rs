@@ -83,7 +83,7 @@ impl Atlas {
                 if let Some(region) = regions.find(|r| r.label(new[k]).is_some()) {
                     return Some(Reference {
                         row: new[k],
-                        labels: region.labels.clone(),
+                        labels: region.known(),
                         // All of the region, from whichever of its points.
                         radius: 2.0 * region.reach,
                         fit: region.fit.clone(),

@@ -136,6 +136,10 @@ pub struct EndTuning {
     pub attempts: usize,
     /// Gaps of the curves about an end that are wider than this are filled by the points beside them.
     pub gap: f64,
+    /// How far the labels of a region reach beyond it, in eps: farther than the edges of the graph that cells are flooded in.
+    /// Without, no fit knew both ends of an edge across the cut between two regions, or across a strip between
+    /// them, and the four cells were one there.
+    pub overlap: f64,
     /// Farthest of the innermost landmarks of the cells about an end, in dl: with those of a random choice
     /// the triangle between two curves was often that of two cells.
     pub innermost: f64,
@@ -151,6 +155,7 @@ impl EndTuning {
         off_center: 0.15,
         attempts: 5,
         gap: 0.1,
+        overlap: 0.4,
         innermost: 1.2,
     };
 }

@@ -222,6 +222,22 @@ pub fn y_junction(draw: &mut Draw) -> Instance {
     half_planes(draw, &[0.0, third + a, 2.0 * third + b])
 }
 
+/// A half plane on a plane, at 60 to 90 degrees.
+pub fn t_junction(draw: &mut Draw) -> Instance {
+    use std::f64::consts::PI;
+    let angle = draw.between(PI / 3.0, 2.0 * PI / 3.0);
+    half_planes(draw, &[0.0, angle, PI])
+}
+
+/// Five to eight half planes on a line, any two of them at 36 degrees or more.
+pub fn book(draw: &mut Draw) -> Instance {
+    let pages = 5 + (draw.between(0.0, 4.0) as usize).min(3);
+    let angles: Vec<f64> = (0..pages)
+        .map(|k| (k as f64 + draw.between(-0.1, 0.1)) * std::f64::consts::TAU / pages as f64)
+        .collect();
+    half_planes(draw, &angles)
+}
+
 /// Three planes that meet in one point, a little off right angles. The strata of the truth are the
 /// twelve quarter planes.
 pub fn triple_point(draw: &mut Draw) -> Instance {
@@ -325,11 +341,12 @@ mod tests {
 
     #[test]
     fn instances_are_what_they_say() {
-        let all: [(Generator, usize, usize); 9] = [
+        let all: [(Generator, usize, usize); 10] = [
             (flat_sheet, 3, 1),
             (two_planes, 3, 4),
             (boundary, 3, 1),
             (y_junction, 3, 3),
+            (t_junction, 3, 3),
             (triple_point, 3, 12),
             (crossing_in_four_dimensions, 4, 2),
             (line_through_plane, 3, 3),

@@ -14,11 +14,14 @@ mod evenness;
 pub(super) mod footprints;
 mod gaps;
 pub(super) mod ground;
+mod opening;
 mod overlay;
 mod patch;
 mod rim;
 mod search;
 mod sheets;
+mod slope;
+mod standing;
 mod tiles;
 mod wings;
 

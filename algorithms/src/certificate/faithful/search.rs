@@ -3,6 +3,7 @@
 use super::evenness::{Evenness, NEIGHBOR};
 use super::footprints::Footprints;
 use super::ground::Ground;
+use super::standing::Standing;
 use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
 use crate::certificate::incidence::Incidence;
@@ -32,6 +33,8 @@ pub(in crate::certificate) struct Search<'a> {
     pub incidence: &'a Incidence,
     pub feet: &'a Footprints,
     pub ground: &'a Ground,
+    /// Which points are on which triangle.
+    pub(super) standing: Standing,
     tree: BallTree,
     rim: Option<BallTree>,
     /// What is taken off a distance to the end of the mesh.
@@ -41,7 +44,7 @@ pub(in crate::certificate) struct Search<'a> {
     /// Largest empty disc that chance leaves, as a radius in spacings.
     largest: f64,
     /// Spacing of all points beside that of those that are looked at.
-    finer: f64,
+    pub(super) finer: f64,
 }
 
 impl<'a> Search<'a> {
@@ -64,6 +67,7 @@ impl<'a> Search<'a> {
             incidence,
             feet,
             ground,
+            standing: Standing::new(count, feet),
             tree: BallTree::new(width, &on_triangles),
             rim: (!places.is_empty()).then(|| BallTree::new(width, &places)),
             chord,

@@ -68,7 +68,7 @@ pub(super) fn look(
     offset: f64,
 ) -> Found {
     let mesh = search.mesh;
-    let mut wings = Wings::new(mesh, search.incidence, search.feet);
+    let mut wings = Wings::new(mesh, search.incidence, &search.standing);
     let mut patch = Patch::default();
     let mut found = Found::default();
     let mut scatters = Vec::new();

@@ -44,7 +44,7 @@ impl<S: Scalar> Fitter<'_, S> {
             if ball.radius > tuning.widest * eps {
                 return None;
             }
-            let shown = match self.shown(model, ball, scratch)? {
+            let shown = match self.shown(model, ball, tuning.overlap * eps, scratch)? {
                 Ok(shown) => shown,
                 Err(Rejection::NeighborhoodTooSmall { needed }) => {
                     ball.radius = tuning.spare * needed;
@@ -64,20 +64,23 @@ impl<S: Scalar> Fitter<'_, S> {
                 model: model as u8,
                 radius: eps,
             };
-            return self.region(shown, ball.radius - shift, used, scratch);
+            let reach = ball.radius - shift;
+            return self.region(shown, [reach, reach + tuning.overlap * eps], used, scratch);
         }
         None
     }
 
-    /// What a model shows in a ball, or why it does not; `None` for a ball that it cannot be asked about.
+    /// What a model shows in a ball, or why it does not; `None` for a ball that it cannot be asked about. Rows up to `margin`
+    /// beyond the ball are labelled.
     fn shown(
         &self,
         model: usize,
         ball: Ball,
+        margin: f64,
         scratch: &mut Scratch<S>,
     ) -> Option<Result<Shown, Rejection>> {
         let engine = self.models[model].as_ref();
-        let view = self.view(ball.center, ball.radius, ball.radius, scratch)?;
+        let view = self.view(ball.center, ball.radius, ball.radius + margin, scratch)?;
         if view.frame.spreads_beyond(engine.local_dimension()) {
             return None;
         }
@@ -100,11 +103,12 @@ impl<S: Scalar> Fitter<'_, S> {
         }))
     }
 
-    /// The rows nearer than `reach` to the point that a fit shows, with what it says of them.
+    /// The rows nearer than `reach` to the point that a fit shows, with what it says of them, and labels of those that
+    /// are nearer than `known`.
     fn region(
         &self,
         shown: Shown,
-        reach: f64,
+        [reach, known]: [f64; 2],
         used: FitUsed,
         scratch: &mut Scratch<S>,
     ) -> Option<(EndRegion, Vec<Settled>)> {
@@ -119,21 +123,22 @@ impl<S: Scalar> Fitter<'_, S> {
         let local = self.local(&view, engine, scratch);
         let labels = std::mem::take(&mut fit.labels);
         let mut own: Vec<(Row, Label, Settled)> = Vec::new();
+        let mut beyond: Vec<(Row, Label)> = Vec::new();
         for (k, located) in located.into_iter().enumerate() {
             let row = rows[k];
-            if self.far(row, &place) < reach {
+            let far = self.far(row, &place);
+            if far >= reach && far < known {
+                beyond.push((row, labels[k]));
+            }
+            if far < reach {
                 let located = located?;
                 let to = self.moved(row, &view, local.point(k), &located.place);
                 own.push((row, labels[k], settled(row, located, to, used)));
             }
         }
         own.sort_by_key(|x| x.0);
-        let region = EndRegion {
-            labels: own.iter().map(|x| (x.0, x.1)).collect(),
-            fit,
-            place: place.into(),
-            reach,
-        };
+        let labels = own.iter().map(|x| (x.0, x.1)).collect();
+        let region = EndRegion::new([labels, beyond], fit, place.into(), reach);
         Some((region, own.into_iter().map(|x| x.2).collect()))
     }
 

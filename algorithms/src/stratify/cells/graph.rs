@@ -68,8 +68,9 @@ impl CellGraph {
             }
             links
         };
-        let all_links = search.each(&is_node, execute, links_of)?;
+        let mut all_links = search.each(&is_node, execute, links_of)?;
         drop(search);
+        link_wards(&mut all_links, strata, &node_of);
         let width = strata.places().map_or(0, PointCloud::dimension);
         let mut places = Vec::with_capacity(rows.len() * width);
         if let Some(all) = strata.places() {
@@ -103,6 +104,41 @@ impl CellGraph {
     pub(super) fn place(&self, node: Node) -> &[f64] {
         let node = node.index();
         &self.places[node * self.width..(node + 1) * self.width]
+    }
+}
+
+/// Fewest links of a node about the end of a curve within its own cell.
+const LEAST_LINKS: usize = 3;
+
+/// Links nodes about the ends of curves within their cells. Two cells can be closer to each other there than points are
+/// apart, so that all nearest neighbors of a point are on the other side of a curve; its cell is one
+/// piece, and the nearest points of that are next to it.
+fn link_wards(links: &mut [Links], strata: &Strata, node_of: &Table<Row, Node>) {
+    let Some(places) = strata.places() else {
+        return;
+    };
+    for region in strata.regions() {
+        for cell in region.fit.labels_of(2) {
+            let own = region.labels.iter().filter(|x| x.1 == cell);
+            let own = own.map(|x| x.0).filter(|&row| node_of[row] != Node::NONE);
+            let rows: Vec<Row> = own.collect();
+            for &row in &rows {
+                let targets = &mut links[node_of[row].index()].targets;
+                if targets.iter().filter(|&&t| t != Node::NONE).count() >= LEAST_LINKS {
+                    continue;
+                }
+                let square = |other: Row| places.squared_distance(row.index(), other.index());
+                let mut near: Vec<Row> = rows.iter().copied().filter(|&r| r != row).collect();
+                near.sort_by(|&a, &b| square(a).total_cmp(&square(b)).then(a.cmp(&b)));
+                for node in near.into_iter().take(LEAST_LINKS).map(|r| node_of[r]) {
+                    if !targets.contains(&node)
+                        && let Some(free) = targets.iter_mut().find(|t| **t == Node::NONE)
+                    {
+                        *free = node;
+                    }
+                }
+            }
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crosscap_core::{Neighbor, Row, Scalar};
 /// A point of a curve that may be its end.
 struct Candidate {
     row: Row,
-    /// How far the middle of the curve about it is off.
+    /// How far the middle of the curve about it is off: half way between where it reaches to both sides.
     shift: f64,
     /// Radius of the analysis there.
     eps: f64,
@@ -23,10 +23,9 @@ pub(super) fn ends<S: Scalar>(analyzer: &Analyzer<'_, S>, strata: &Strata) -> Ve
         return Vec::new();
     };
     let mut near: Vec<Neighbor<S>> = Vec::new();
-    let mut mean = vec![0.0; places.dimension()];
     let mut found: Vec<Candidate> = (strata.rows())
         .filter(|&row| is_double(strata, row))
-        .filter_map(|row| candidate(analyzer, strata, row, &mut near, &mut mean))
+        .filter_map(|row| candidate(analyzer, strata, row, &mut near))
         .collect();
     found.sort_by(|a, b| b.shift.total_cmp(&a.shift).then(a.row.cmp(&b.row)));
     let mut ends: Vec<(Row, f64)> = Vec::new();
@@ -49,7 +48,6 @@ fn candidate<S: Scalar>(
     strata: &Strata,
     row: Row,
     near: &mut Vec<Neighbor<S>>,
-    mean: &mut [f64],
 ) -> Option<Candidate> {
     let (places, oracle) = (strata.places()?, analyzer.space.oracle());
     // The fit of the row itself may have shrunk.
@@ -63,16 +61,21 @@ fn candidate<S: Scalar>(
     if near.iter().any(|x| stops(analyzer, strata, x.row())) {
         return None;
     }
-    mean.fill(0.0);
-    let mut count = 0.0;
-    for x in near.iter().filter(|x| is_double(strata, x.row())) {
-        count += 1.0;
-        let places = places.point(x.index).iter().zip(places.point(row.index()));
-        for (m, (o, p)) in mean.iter_mut().zip(places) {
-            *m += o - p;
-        }
-    }
-    let shift = mean.iter().map(|m| m * m).sum::<f64>().sqrt() / count;
+    // Points of the curve lie unevenly along it: how far they reach tells more than their mean.
+    let curve = || {
+        near.iter()
+            .map(|x| x.row())
+            .filter(|&x| is_double(strata, x))
+    };
+    let square = |x: Row| places.squared_distance(row.index(), x.index());
+    let farthest = curve().max_by(|&a, &b| square(a).total_cmp(&square(b)).then(b.cmp(&a)))?;
+    let ahead = square(farthest).sqrt();
+    let behind = curve().map(|x| {
+        // Along the way to the farthest point, by the law of cosines.
+        let across = places.squared_distance(farthest.index(), x.index());
+        (square(x) + ahead * ahead - across) / (2.0 * ahead)
+    });
+    let shift = (ahead + behind.fold(0.0, f64::min)) / 2.0;
     (shift > analyzer.tuning.ends.shift * eps).then_some(Candidate { row, shift, eps })
 }
 

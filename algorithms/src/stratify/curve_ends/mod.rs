@@ -69,7 +69,7 @@ pub(super) fn explain<S: Scalar>(
             });
         }
     }
-    region::part(fitter.cloud, &mut answers);
+    region::part(fitter.cloud, &mut answers, tuning.overlap);
     for answer in answers {
         enter::enter(strata, fitter.cloud, answer, tuning);
     }

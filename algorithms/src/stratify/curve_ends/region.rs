@@ -10,6 +10,8 @@ use crosscap_core::{Decomposition, Label, PointCloud, Row, Scalar, squared_dista
 pub(in crate::stratify) struct EndRegion {
     /// Rows of the region with their labels, by row.
     pub(in crate::stratify) labels: Vec<(Row, Label)>,
+    /// Rows beyond it with the labels that they have by its fit.
+    beyond: Vec<(Row, Label)>,
     /// The strata, without the labels.
     pub(in crate::stratify) fit: Decomposition,
     /// Place of the point.
@@ -28,6 +30,30 @@ pub(in crate::stratify) struct Settled {
 }
 
 impl EndRegion {
+    /// The rows nearer than `reach` to `place`, each with its label and by row, some beyond, and the strata that the
+    /// labels name.
+    pub(in crate::stratify) fn new(
+        [labels, beyond]: [Vec<(Row, Label)>; 2],
+        fit: Decomposition,
+        place: Vec<f64>,
+        reach: f64,
+    ) -> Self {
+        Self {
+            labels,
+            beyond,
+            fit,
+            place,
+            reach,
+        }
+    }
+
+    /// Rows with their labels, by row: those of the region, and those beyond.
+    pub(in crate::stratify) fn known(&self) -> Vec<(Row, Label)> {
+        let mut all = [&self.labels[..], &self.beyond[..]].concat();
+        all.sort_unstable();
+        all
+    }
+
     /// The label of a row.
     pub(in crate::stratify) fn label(&self, row: Row) -> Option<Label> {
         let at = self.labels.binary_search_by_key(&row, |x| x.0).ok()?;
@@ -40,7 +66,7 @@ impl EndRegion {
     }
 
     /// Whether a label names a cell.
-    pub(super) fn is_cell(&self, label: Label) -> bool {
+    pub(in crate::stratify) fn is_cell(&self, label: Label) -> bool {
         self.fit.is_of(label, 2)
     }
 
@@ -58,8 +84,8 @@ impl EndRegion {
 }
 
 /// Regions that overlap reach half of the way to the other's point, or more where the other does not come
-/// as near: a row has labels of one region alone.
-pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer]) {
+/// as near: a row belongs to one region alone. Labels reach `overlap` radii of the analysis farther than that.
+pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer], overlap: f64) {
     let limits: Vec<f64> = (0..answers.len())
         .map(|k| {
             let own = &answers[k].region;
@@ -74,9 +100,11 @@ pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer]) {
     for (answer, limit) in answers.iter_mut().zip(limits) {
         let region = &mut answer.region;
         if limit < region.reach {
-            let mut labels = std::mem::take(&mut region.labels);
-            labels.retain(|x| region.far(cloud, x.0) < limit);
-            region.labels = labels;
+            let far = |x: &(Row, Label)| region.far(cloud, x.0);
+            let (own, mut beyond): (Vec<_>, Vec<_>) =
+                (region.known().into_iter()).partition(|x| far(x) < limit);
+            beyond.retain(|x| far(x) < limit + overlap * answer.eps);
+            (region.labels, region.beyond) = (own, beyond);
             region.reach = limit;
             answer.settled.retain(|x| region.label(x.row).is_some());
         }
@@ -127,12 +155,7 @@ mod tests {
             center: vec![at],
             center_offset: 0.0,
         };
-        let mut region = EndRegion {
-            labels: Vec::new(),
-            fit,
-            place: vec![at],
-            reach,
-        };
+        let mut region = EndRegion::new([Vec::new(), Vec::new()], fit, vec![at], reach);
         let rows: Vec<Row> = (0..cloud.len())
             .map(Row::new)
             .filter(|&r| region.far(cloud, r) < reach)
@@ -155,7 +178,7 @@ mod tests {
         let cloud = PointCloud::new(1, (0..31).map(|k| f64::from(k) / 10.0).collect()).unwrap();
         let all = [(0.51, 0.7), (1.53, 0.7), (2.8, 0.4)];
         let mut answers = all.map(|(at, reach)| answer(&cloud, at, reach));
-        part(&cloud, &mut answers);
+        part(&cloud, &mut answers, 0.5);
         let reaches = answers.each_ref().map(|a| a.region.reach);
         // The first two meet half way; the third is clear of both.
         for (found, expected) in reaches.iter().zip([0.51, 0.51, 0.4]) {
@@ -169,5 +192,16 @@ mod tests {
             assert_eq!(a.settled.len(), a.region.labels.len());
             assert!(!a.settled.is_empty());
         }
+        // Those next to the cut are known to both.
+        let known = answers.each_ref().map(|a| a.region.known());
+        for row in [9, 11] {
+            assert!(
+                known[..2]
+                    .iter()
+                    .all(|k| k.contains(&(Row::new(row), Label::new(0)))),
+                "{row}"
+            );
+        }
+        assert_eq!(known[2].len(), answers[2].region.labels.len());
     }
 }

@@ -169,7 +169,7 @@ impl Skeleton {
                     curves: count(1),
                     cells: count(2),
                     link: (strata.sites()[r.row].on()?.fit)
-                        .and_then(|used| models[usize::from(used.model)].link()),
+                        .and_then(|used| models[usize::from(used.model)].link_of(&r.fit)),
                 })
             })
             .collect()

@@ -34,6 +34,8 @@ impl Nodes {
                     let corner = skeleton.corner_fit(k);
                     match kind {
                         StratumKind::Curve => !corner.is_point(l),
+                        // A fit with a point knows the boundaries that end in it.
+                        _ if corner.has_points() && corner.is_curve(l) => true,
                         _ => corner.is_cell(l) || ground.distance(corner.row, row) > ground.dl,
                     }
                 })
@@ -47,14 +49,12 @@ impl Nodes {
             rows,
             branches: labels,
         };
-        if kind == StratumKind::Curve {
-            nodes.keep_arcs(skeleton, ground);
-        }
+        nodes.keep_arcs(skeleton, ground);
         nodes
     }
 
-    /// Only 0-strata tell arcs apart. Where the bands of two arcs run together, the nearest point that is
-    /// on one arc alone decides.
+    /// 0-strata tell arcs apart, and where a boundary was given the cells at a corner do. Where the bands of two arcs run
+    /// together, or a point of a cell fills a gap of one, the nearest point that is on one arc alone decides.
     fn keep_arcs<S: Scalar>(&mut self, skeleton: &Skeleton, ground: &Ground<'_, '_, S>) {
         let on_arc: Vec<(Row, Branch)> = (self.rows.iter().zip(&self.branches))
             .filter_map(|(&row, &found)| Some((row, found?)))
@@ -63,11 +63,15 @@ impl Nodes {
                 corner.has_points() && corner.is_curve(l)
             })
             .collect();
+        let by_cells = self.kind == StratumKind::Boundary;
         for (found, &row) in self.branches.iter_mut().zip(&self.rows) {
             *found = found.and_then(|(k, l)| {
                 let corner = skeleton.corner_fit(k);
+                if !corner.has_points() {
+                    return by_cells.then_some((k, l));
+                }
                 if corner.is_curve(l) {
-                    return corner.has_points().then_some((k, l));
+                    return Some((k, l));
                 }
                 let far = |x: &(Row, Branch)| ground.distance(x.0, row);
                 let own = on_arc.iter().filter(|x| x.1.0 == k);
