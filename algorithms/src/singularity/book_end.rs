@@ -186,7 +186,7 @@ struct Names {
     /// Of the boundary of every page, or of the seam that it ends at.
     rims: Vec<u8>,
     /// Of its cell.
-    cells: Vec<u8>,
+    cell_of: Vec<u8>,
     /// Dimension of the stratum of every label, and how many cells meet at those that are curves.
     strata: Vec<u8>,
     cells_at_curve: Vec<u8>,
@@ -197,7 +197,7 @@ impl Names {
         let count = book.count();
         let mut out = Self {
             rims: vec![0; count],
-            cells: vec![0; count],
+            cell_of: vec![0; count],
             strata: vec![0, 1],
             cells_at_curve: vec![count as u8],
         };
@@ -214,7 +214,7 @@ impl Names {
                 }
             }
         }
-        for cell in &mut out.cells {
+        for cell in &mut out.cell_of {
             *cell = out.strata.len() as u8;
             out.strata.push(2);
         }
@@ -271,7 +271,7 @@ impl CurveEnd for Fit {
         let x = self.all[row];
         let page = self.book.page(row, &x);
         let sheet = usize::from(self.book.sheets.owner[row]);
-        let (rim_name, cell) = (self.names.rims[page], self.names.cells[page]);
+        let (rim_name, cell) = (self.names.rims[page], self.names.cell_of[page]);
         let curve = (self.book.meet(x, LARGEST_STEP * self.radius))
             .map(|place| (place, (place - x).norm(), self.way.dot(&(self.end - place))));
         let pages = self.book.count() as u8;
