@@ -358,7 +358,7 @@ mod tests {
         let page = |&(turn, top): &(f64, f64)| {
             let (s, c) = turn.sin_cos();
             let tall = ((1.0 + top) * 14.0) as usize;
-            steps(14).flat_map(move |r| {
+            steps(14, 0.4).flat_map(move |r| {
                 steps(tall, 0.9).map(move |z| [r * c, r * s, (1.0 + top) * z - 1.0])
             })
         };
