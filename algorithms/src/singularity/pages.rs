@@ -20,7 +20,7 @@ const ALONG: f64 = 0.06;
 const ACROSS: f64 = 0.04;
 /// The first while all normals weigh the same: next to the curve the nearest points of a grid lie across it, and so do
 /// their normals. Of three sheets that cross in a point a third does.
-const ALONG_AT_FIRST: f64 = 0.25;
+const ALONG_AT_FIRST: f64 = 0.32;
 /// Points nearer to the curve than this share of the radius do not tell their page.
 const NEAR: f64 = 0.3;
 /// Least angle between two pages in which there is no point, and greatest angle under which one page is seen.
