@@ -37,12 +37,7 @@ impl<S: Scalar, I: Id> SparseDistances<S, I> {
                     });
                 }
             }
-            if !d.is_finite() || d < S::zero() {
-                return Err(Error::NotFinite {
-                    row: a.index(),
-                    column: b.index(),
-                });
-            }
+            sound(d, a, b)?;
             if a != b {
                 all.push((a, b, d));
                 all.push((b, a, d));
@@ -112,50 +107,30 @@ impl<S: Scalar> SparseDistances<S> {
         neighborhoods: &[CellNeighborhood],
         mut distance: impl FnMut(Landmark, Landmark) -> S,
     ) -> Result<Self, Error> {
-        let mut holders = vec![0usize; count + 1];
-        for &m in neighborhoods.iter().flat_map(|x| &x.members) {
-            if m.index() >= count {
-                return Err(Error::Index {
-                    what: "landmark",
-                    index: m.index(),
-                    limit: count,
-                });
-            }
-            holders[m.index() + 1] += 1;
-        }
-        for k in 0..count {
-            holders[k + 1] += holders[k];
-        }
-        let mut next = holders.clone();
-        let mut holding = vec![0u32; holders[count]];
-        for (k, near) in neighborhoods.iter().enumerate() {
-            for &m in &near.members {
-                holding[next[m.index()]] = k as u32;
-                next[m.index()] += 1;
-            }
-        }
+        let holders = Holders::of(count, neighborhoods)?;
         let mut matrix = Self {
             starts: Vec::with_capacity(count + 1),
             columns: Vec::new(),
             values: Vec::new(),
         };
         matrix.starts.push(0);
-        let mut seen: Table<Landmark, Option<Landmark>> = Table::filled(count, None);
+        // The row that a landmark was seen in last, counted from 1.
+        let mut seen: Table<Landmark, usize> = Table::filled(count, 0);
         let mut row: Vec<Landmark> = Vec::new();
         // Pairs are symmetric: row b has the rows behind it in the order in which they ask for theirs.
         let mut asked: Table<Landmark, usize> = Table::filled(count, 0);
-        for a in (0..count).map(Landmark::new) {
-            let holding = &holding[holders[a.index()]..holders[a.index() + 1]];
+        for a in seen.ids() {
             let members = |k: &u32| &neighborhoods[*k as usize].members;
+            let holding = holders.at(a);
             let most = holding.iter().map(|k| members(k).len()).sum();
             row.resize(row.len().max(most), a);
-            let mut length = 0;
-            seen[a] = Some(a);
+            let (mut length, round) = (0, a.index() + 1);
+            seen[a] = round;
             for &b in holding.iter().flat_map(members) {
                 // Written in any case and kept if new: a branch would be guessed wrong half of the time.
                 row[length] = b;
-                length += usize::from(seen[b] != Some(a));
-                seen[b] = Some(a);
+                length += usize::from(seen[b] != round);
+                seen[b] = round;
             }
             let from = matrix.columns.len();
             matrix.columns.extend_from_slice(&row[..length]);
@@ -170,17 +145,63 @@ impl<S: Scalar> SparseDistances<S> {
                     *there += 1;
                     matrix.values[*there - 1]
                 };
-                if !d.is_finite() || d < S::zero() {
-                    return Err(Error::NotFinite {
-                        row: a.index(),
-                        column: b.index(),
-                    });
-                }
+                sound(d, a, b)?;
                 matrix.values.push(d);
             }
             matrix.starts.push(matrix.columns.len());
         }
         Ok(matrix)
+    }
+}
+
+/// # Errors
+/// [`Error::NotFinite`] for a distance that is none.
+fn sound<S: Scalar, I: Id>(d: S, a: I, b: I) -> Result<(), Error> {
+    if d.is_finite() && d >= S::zero() {
+        return Ok(());
+    }
+    Err(Error::NotFinite {
+        row: a.index(),
+        column: b.index(),
+    })
+}
+
+/// The neighborhoods that every landmark is in.
+struct Holders {
+    starts: Vec<usize>,
+    holding: Vec<u32>,
+}
+
+impl Holders {
+    fn of(count: usize, neighborhoods: &[CellNeighborhood]) -> Result<Self, Error> {
+        let mut starts = vec![0usize; count + 1];
+        for &m in neighborhoods.iter().flat_map(|x| &x.members) {
+            if m.index() >= count {
+                return Err(Error::Index {
+                    what: "landmark",
+                    index: m.index(),
+                    limit: count,
+                });
+            }
+            starts[m.index() + 1] += 1;
+        }
+        for k in 0..count {
+            starts[k + 1] += starts[k];
+        }
+        let mut next = starts.clone();
+        let mut holding = vec![0u32; starts[count]];
+        for (k, near) in (0..).zip(neighborhoods) {
+            for &m in &near.members {
+                holding[next[m.index()]] = k;
+                next[m.index()] += 1;
+            }
+        }
+        Ok(Self { starts, holding })
+    }
+
+    fn at(&self, landmark: Landmark) -> &[u32] {
+        let k = landmark.index();
+        &self.holding[self.starts[k]..self.starts[k + 1]]
     }
 }
 
@@ -202,78 +223,71 @@ impl<S: Scalar, I: Id> TryFrom<Rows<S, I>> for SparseDistances<S, I> {
             columns,
             values,
         } = rows;
-        let wrong = |found: String, expected: &str| {
-            Err(Error::Shape {
-                found,
-                expected: expected.into(),
-            })
-        };
         let whole = starts.first() == Some(&0)
             && starts.is_sorted()
             && starts.last() == Some(&columns.len())
             && columns.len() == values.len();
         if !whole {
-            return wrong(
-                format!(
+            return Err(Error::Shape {
+                found: format!(
                     "rows from {:?} to {:?} of {} columns and {} distances",
                     starts.first(),
                     starts.last(),
                     columns.len(),
                     values.len()
                 ),
-                "rows one after the other from 0 to the number of columns, a distance for each",
-            );
+                expected:
+                    "rows one after the other from 0 to the number of columns, a distance for each"
+                        .into(),
+            });
         }
         let matrix = Self {
             starts,
             columns,
             values,
         };
-        let count = matrix.len();
-        for a in 0..count {
-            let range = matrix.starts[a]..matrix.starts[a + 1];
-            let columns = &matrix.columns[range.clone()];
-            if !columns.is_sorted_by(|x, y| x < y) {
-                return wrong(
-                    {
-                        let columns: Vec<usize> = columns.iter().map(|b| b.index()).collect();
-                        format!("row {a} with the columns {columns:?}")
-                    },
-                    "increasing ones",
-                );
+        (0..matrix.len()).try_for_each(|a| matrix.check_row(I::new(a)))?;
+        Ok(matrix)
+    }
+}
+
+impl<S: Scalar, I: Id> SparseDistances<S, I> {
+    /// Whether a row that was read has increasing columns in range, and distances that are the same back.
+    fn check_row(&self, a: I) -> Result<(), Error> {
+        let wrong = |found: String, expected: &str| {
+            Err(Error::Shape {
+                found,
+                expected: expected.into(),
+            })
+        };
+        let (count, row) = (self.len(), a.index());
+        let range = self.starts[row]..self.starts[row + 1];
+        let columns = &self.columns[range.clone()];
+        if !columns.is_sorted_by(|x, y| x < y) {
+            let columns: Vec<usize> = columns.iter().map(|b| b.index()).collect();
+            let found = format!("row {row} with the columns {columns:?}");
+            return wrong(found, "increasing ones");
+        }
+        if let Some(&b) = columns.last().filter(|b| b.index() >= count) {
+            return Err(Error::Index {
+                what: "landmark",
+                index: b.index(),
+                limit: count,
+            });
+        }
+        for (&b, &d) in columns.iter().zip(&self.values[range]) {
+            sound(d, a, b)?;
+            if b == a {
+                let found = format!("a distance of landmark {row} from itself");
+                return wrong(found, "distances of two landmarks");
             }
-            if let Some(&b) = columns.last().filter(|b| b.index() >= count) {
-                return Err(Error::Index {
-                    what: "landmark",
-                    index: b.index(),
-                    limit: count,
-                });
-            }
-            for (&b, &d) in columns.iter().zip(&matrix.values[range]) {
-                if !d.is_finite() || d < S::zero() {
-                    return Err(Error::NotFinite {
-                        row: a,
-                        column: b.index(),
-                    });
-                }
-                if b.index() == a {
-                    return wrong(
-                        format!("a distance of landmark {a} from itself"),
-                        "distances of two landmarks",
-                    );
-                }
-                if matrix.get(b, I::new(a)) != Some(d) {
-                    return wrong(
-                        {
-                            let (d, b) = (d.as_f64(), b.index());
-                            format!("the distance {d} from {a} to {b}, not back")
-                        },
-                        "the same in both directions",
-                    );
-                }
+            if self.get(b, a) != Some(d) {
+                let (d, b) = (d.as_f64(), b.index());
+                let found = format!("the distance {d} from {row} to {b}, not back");
+                return wrong(found, "the same in both directions");
             }
         }
-        Ok(matrix)
+        Ok(())
     }
 }
 

@@ -37,14 +37,6 @@ impl<S: Scalar> StratifiedLandmarks<S> {
     /// [`Error::Index`] or [`Error::Shape`] for the first one that does not hold.
     pub fn check(&self) -> Result<(), Error> {
         let count = self.strata.len();
-        let in_range = |landmark: Landmark| match self.strata.get(landmark) {
-            Some(_) => Ok(()),
-            None => Err(Error::Index {
-                what: "landmark",
-                index: landmark.index(),
-                limit: count,
-            }),
-        };
         if self.distances.len() != count {
             return Err(Error::Shape {
                 found: format!("distances of {} landmarks", self.distances.len()),
@@ -57,9 +49,42 @@ impl<S: Scalar> StratifiedLandmarks<S> {
                 expected: "0, 1 or 2".into(),
             });
         }
+        self.check_edges()?;
+        // The neighborhood that a landmark was in last, and its position there.
+        let mut round: Table<Landmark, u64> = Table::filled(count, u64::MAX);
+        for (k, near) in (0_u64..).zip(&self.neighborhoods) {
+            if near.members.first() != Some(&near.center) {
+                return Err(Error::Shape {
+                    found: format!(
+                        "a neighborhood of {} that starts with {:?}",
+                        near.center,
+                        near.members.first().map(|m| m.index())
+                    ),
+                    expected: "the center first".into(),
+                });
+            }
+            let members = near.members.iter();
+            members.copied().try_for_each(|m| self.in_range(m))?;
+            self.check_distances(near, k << 32, &mut round)?;
+        }
+        Ok(())
+    }
+
+    fn in_range(&self, landmark: Landmark) -> Result<(), Error> {
+        match self.strata.get(landmark) {
+            Some(_) => Ok(()),
+            None => Err(Error::Index {
+                what: "landmark",
+                index: landmark.index(),
+                limit: self.strata.len(),
+            }),
+        }
+    }
+
+    fn check_edges(&self) -> Result<(), Error> {
         for edge in &self.curve_edges {
             for end in edge.landmarks() {
-                in_range(end)?;
+                self.in_range(end)?;
                 if self.strata[end] > 1 {
                     return Err(Error::Shape {
                         found: format!(
@@ -71,42 +96,35 @@ impl<S: Scalar> StratifiedLandmarks<S> {
                 }
             }
         }
-        // The neighborhood that a landmark was in last, and its position there.
-        let mut round: Table<Landmark, u64> = Table::filled(count, u64::MAX);
-        for (k, near) in self.neighborhoods.iter().enumerate() {
-            if near.members.first() != Some(&near.center) {
-                return Err(Error::Shape {
-                    found: format!(
-                        "a neighborhood of {} that starts with {:?}",
-                        near.center,
-                        near.members.first().map(|m| m.index())
-                    ),
-                    expected: "the center first".into(),
-                });
+        Ok(())
+    }
+
+    /// Whether the distances of all members are kept. `first` and what follows it, one for each member, are numbers that
+    /// `round` has had for none.
+    fn check_distances(
+        &self,
+        near: &CellNeighborhood,
+        first: u64,
+        round: &mut Table<Landmark, u64>,
+    ) -> Result<(), Error> {
+        for (i, &m) in (0_u64..).zip(&near.members) {
+            round[m] = first + i;
+        }
+        // Every member's row is gone through once, rather than searched for every other.
+        for (i, &a) in near.members.iter().enumerate() {
+            let before = |b: Landmark| round[b].wrapping_sub(first) < i as u64;
+            let kept: usize = (self.distances.row(a))
+                .map(|x| usize::from(before(x.0)))
+                .sum();
+            if kept == i {
+                continue;
             }
-            for &m in &near.members {
-                in_range(m)?;
-            }
-            let first = (k as u64) << 32;
-            for (i, &m) in (0_u64..).zip(&near.members) {
-                round[m] = first + i;
-            }
-            // Every member's row is gone through once, rather than searched for every other.
-            for (i, &a) in near.members.iter().enumerate() {
-                let before = |b: Landmark| round[b].wrapping_sub(first) < i as u64;
-                let kept: usize = (self.distances.row(a))
-                    .map(|x| usize::from(before(x.0)))
-                    .sum();
-                if kept == i {
-                    continue;
-                }
-                for &b in &near.members[..i] {
-                    if self.distances.get(a, b).is_none() {
-                        return Err(Error::Shape {
-                            found: format!("no distance between landmarks {a} and {b}"),
-                            expected: format!("one, as both are near landmark {}", near.center),
-                        });
-                    }
+            for &b in &near.members[..i] {
+                if self.distances.get(a, b).is_none() {
+                    return Err(Error::Shape {
+                        found: format!("no distance between landmarks {a} and {b}"),
+                        expected: format!("one, as both are near landmark {}", near.center),
+                    });
                 }
             }
         }

@@ -4,7 +4,7 @@ use super::cover::CoverReport;
 use super::distance_report::DistanceReport;
 use super::edges::EdgeReport;
 use super::faithful::FaithfulReport;
-use super::geometry::GeometryReport;
+use super::geometry_report::GeometryReport;
 use super::indices::IndexReport;
 use super::kinds::Level;
 use super::links::LinkReport;

@@ -3,7 +3,7 @@
 use super::flats::Flat;
 use super::pages::Pages;
 use super::sheets::Sheets;
-use super::two_planes::PlanePair;
+use super::plane_pair::PlanePair;
 use crosscap_core::Rejection;
 use nalgebra::Vector3;
 
