@@ -3,8 +3,8 @@
 use super::curve_end;
 use super::page_sheets::PageSheets;
 use super::patch::PATCH_POINTS;
+use super::plane_pair::PlanePair;
 use super::tolerance::{Tolerance, at_least, vectors};
-use super::two_planes::PlanePair;
 use crosscap_core::{
     Decomposition, Error, Label, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };

@@ -2,8 +2,8 @@
 
 use super::flats::Flat;
 use super::pages::Pages;
-use super::sheets::Sheets;
 use super::plane_pair::PlanePair;
+use super::sheets::Sheets;
 use crosscap_core::Rejection;
 use nalgebra::Vector3;
 

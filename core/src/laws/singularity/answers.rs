@@ -2,7 +2,7 @@
 
 use crate::laws::instances::Instance;
 use crate::laws::trial::{Outcome, ensure};
-use crate::{Decomposition, Label, Rejection, SingularityModel, Table};
+use crate::{Decomposition, Label, LocalPoints, Rejection, SingularityModel, Table};
 
 pub(super) type Answer = Result<Decomposition, Rejection>;
 
