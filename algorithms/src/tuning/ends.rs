@@ -117,7 +117,7 @@ pub struct BookEndTuning {
     /// Least cosine of the angle of the curve and the way out of a sheet.
     pub crossing: f64,
     /// The curve meets the boundaries at most so many spacings of the points of a page apart: each runs inside the true
-    /// one by about half a spacing.
+    /// one by about half a spacing, and a page on one side has nothing to hold its parabola beyond the curve.
     pub apart: f64,
     /// The same in ep.
     pub apart_ep: f64,
@@ -133,7 +133,7 @@ impl BookEndTuning {
         share: 0.03,
         sine: 0.34,
         crossing: 0.5,
-        apart: 1.5,
+        apart: 2.0,
         apart_ep: 3.0,
         step: 0.6,
     };

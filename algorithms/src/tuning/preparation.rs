@@ -65,8 +65,8 @@ impl ResolutionTuning {
     };
 }
 
-/// What decides whether a point is an outlier. The unit of lengths is the spacing of the surface next to the point,
-/// [`LocalSpacing::low`](crate::prepare::LocalSpacing::low).
+/// What decides whether a point is an outlier. The unit of lengths is the spacing of the surface next to the point: the second
+/// smallest of the spacings of the point and its eight nearest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OutlierTuning {
     /// Neighbors that a point is judged by: 24 are a disc of radius 2.8 spacings of a surface.

@@ -71,18 +71,20 @@ fn scatter(heights: &[f64], (low, high): (&[usize], &[usize])) -> f64 {
     (sum / heights.len() as f64).sqrt()
 }
 
-/// How likely the gap is in heights of one sheet, anywhere between two of the points.
+/// How likely the gap is in heights of one sheet.
 ///
-/// Heights that are uniform over a range leave a share x of it empty with probability (1 - x)^m. That is asked of all
-/// points over the whole range, and of the points of each side over their own range and the gap: beyond an edge a sheet
-/// climbs, and the few points of it that are in sight have a range as wide as the gap below them.
+/// Heights that are uniform over a range leave a share x of it empty, between two of m points, with probability
+/// m (1 - x)^(m - 2): that is asked of all points. The points of each side leave the gap empty, which is the end of their range then,
+/// with probability (1 - x)^(m - 1), x the share of their own range and the gap: beyond an edge a sheet climbs, and the few
+/// points of it that are in sight have a range as wide as the gap below them.
 fn chance(heights: &[f64], (low, high): (&[usize], &[usize]), gap: f64) -> f64 {
     let height = |at: Option<&usize>| at.map_or(0.0, |&k| heights[k]);
     let range = |side: &[usize]| height(side.last()) - height(side.first());
     let filled = |range: f64, points: usize| (range / (range + gap)).powi(points as i32);
-    let all = filled(range(low) + range(high), heights.len() - 2);
+    let count = heights.len();
+    let all = count as f64 * filled(range(low) + range(high), count - 2);
     let own = |side: &[usize]| filled(range(side), side.len() - 1);
-    heights.len() as f64 * all.max(own(low)).max(own(high))
+    all.max(own(low)).max(own(high))
 }
 
 /// Whether the points of the smaller side have points of the larger all around them, along the surface.
@@ -153,6 +155,18 @@ mod tests {
             let told = (1..41).filter(is_told).count();
             assert!(told > 14, "{share}: {told} of 40");
         }
+    }
+
+    #[test]
+    fn sheets_of_noisy_points_are_told_too() {
+        let is_told = |seed: &u64| {
+            let (flat, heights) = sheet(*seed, |random, _| {
+                let upper = random.uniform() < 0.5;
+                f64::from(u8::from(upper)) * 0.8 + 0.1 * random.normal()
+            });
+            Overlay::of(&flat, &heights, 1.0).is_some_and(|x| x.chance < 1e-5)
+        };
+        assert!((1..41).filter(is_told).count() > 10);
     }
 
     #[test]
