@@ -4,9 +4,11 @@
 //! `CROSSCAP_BLESS=1 cargo test --test api` writes them anew. The listing is read off the sources, so that it is the same
 //! for every toolchain; what a macro makes is not in it.
 
+mod circles;
 mod listing;
 mod modules;
 
+use circles::circles;
 use listing::listing;
 use modules::Module;
 use std::collections::BTreeSet;
@@ -52,6 +54,33 @@ fn the_public_interface_is_as_listed() {
         "the public interface has changed; if that is meant, write it down in CHANGELOG.md, and \
          list it anew with `CROSSCAP_BLESS=1 cargo test --test api`\n{changed}"
     );
+}
+
+#[test]
+fn files_import_each_other_in_no_circle() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (name, sources) in CRATES {
+        let found = circles(&Module::read(&root.join(sources).join("lib.rs")));
+        assert!(found.is_empty(), "{name}: {found:?}");
+    }
+}
+
+#[test]
+fn a_circle_is_found_through_what_is_handed_on() {
+    let circle = |inner: &str| {
+        let source = format!(
+            "mod one {{ use super::Two; pub struct One(Two); }}
+             mod two {{ {inner} pub struct Two; }}
+             pub use one::One; pub use two::Two;"
+        );
+        circles(&Module::parse(&source, Path::new("lib.rs")))
+    };
+    assert!(circle("").is_empty());
+    for inner in ["use crate::One;", "fn ask(x: super::one::One) {}"] {
+        let found = circle(inner);
+        assert_eq!(found.len(), 1, "{inner}: {found:?}");
+        assert!(found[0].contains("one") && found[0].contains("two"));
+    }
 }
 
 #[test]

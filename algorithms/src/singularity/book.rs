@@ -5,6 +5,7 @@ use super::page_sheets::PageSheets;
 use super::patch::PATCH_POINTS;
 use super::plane_pair::PlanePair;
 use super::tolerance::{Tolerance, at_least, vectors};
+use crate::tuning::BookTuning;
 use crosscap_core::{
     Decomposition, Error, Label, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
@@ -19,20 +20,11 @@ use nalgebra::Vector3;
 #[derive(Clone, Copy, Debug)]
 pub struct Book {
     tolerance: Tolerance,
+    tuning: BookTuning,
 }
 
-/// Farthest that the curve is from the middle of the points, in radii: farther out pages are missing in the ball.
-const OFF_CENTER: f64 = 0.35;
-/// Least share of the points that a page holds.
-const LEAST_SHARE: f64 = 0.04;
-/// Farthest that a point is moved, in radii.
-const STEP: f64 = 0.6;
-/// A point off the curve tells where it is up to this many ep.
-const WITNESS_REACH: f64 = 3.0;
 /// The label of the curve; those of the pages follow.
 const CURVE: Label = Label::new(0);
-/// Every page has a point this close to a place on the curve, in radii.
-const SUPPORT: f64 = 0.6;
 
 impl Book {
     /// Model with fit tolerance `dp` and curve tolerance `ep`, unit of the data: a point nearer than
@@ -43,7 +35,13 @@ impl Book {
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
             tolerance: Tolerance::new(dp, ep)?,
+            tuning: BookTuning::MEASURED,
         })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: BookTuning) -> Self {
+        Self { tuning, ..self }
     }
 
     /// Whether the points lie on two planes, on both sides of each: that is told in a tenth of the time that pages take.
@@ -64,7 +62,7 @@ impl Book {
             sum += off * off;
         }
         let count = points.len() as f64;
-        let least = LEAST_SHARE * count;
+        let least = self.tuning.share * count;
         sum <= self.tolerance.ep.powi(2) * count && held.iter().all(|&h| h as f64 >= least)
     }
 
@@ -75,27 +73,29 @@ impl Book {
         if self.is_crossing(points, local.radius) {
             return Err(Rejection::NoRealSolution);
         }
-        let book = PageSheets::read(&all, local.fitted, local.radius, |pages| {
+        let (tuning, radius) = (&self.tuning, local.radius);
+        let book = PageSheets::read(&all, local.fitted, radius, |pages| {
             let aside = pages.place - pages.along * pages.along.dot(&pages.place);
             let known = match (pages.out.len(), pages.pairs().len()) {
                 (3, sheets) => sheets == 0,
                 (4, sheets) => sheets == 2,
                 _ => false,
             };
-            !known && aside.norm() <= OFF_CENTER * local.radius
+            !known && aside.norm() <= tuning.off_center * radius
         })?;
         let off = || points.iter().enumerate().map(|(row, x)| book.off(row, x));
         let residual = (self.tolerance).residual(off().map(|d| d * d).sum(), points.len())?;
         let off: Vec<f64> = off().collect();
-        curve_end::follows(off.into_iter(), residual, self.tolerance.ep)?;
-        book.are_held(points, LEAST_SHARE)?;
+        curve_end::follows(off.into_iter(), residual, self.tolerance.ep, &tuning.end)?;
+        book.are_held(points, tuning.share)?;
         Ok(Fit {
             all,
             book,
             residual,
             ep: self.tolerance.ep,
-            radius: local.radius,
+            radius,
             fitted: local.fitted,
+            tuning: self.tuning,
         })
     }
 }
@@ -108,6 +108,7 @@ struct Fit {
     ep: f64,
     radius: f64,
     fitted: usize,
+    tuning: BookTuning,
 }
 
 impl Fit {
@@ -118,9 +119,10 @@ impl Fit {
         let d = x - pages.place;
         let aside = d - pages.along * pages.along.dot(&d);
         // The curve is no farther from the line than it bends within the ball.
-        let near = aside.norm() < STEP * self.radius;
-        let place = self.book.meet(x, STEP * self.radius).filter(|_| near)?;
-        ((place - x).norm() < WITNESS_REACH * self.ep).then_some(place)
+        let step = self.tuning.step * self.radius;
+        let near = aside.norm() < step;
+        let place = self.book.meet(x, step).filter(|_| near)?;
+        ((place - x).norm() < self.tuning.witness * self.ep).then_some(place)
     }
 
     fn label(&self, row: usize) -> Label {
@@ -136,7 +138,8 @@ impl Fit {
         let pages = 0..self.book.count();
         pages.into_iter().all(|page| {
             self.all[..self.fitted].iter().enumerate().any(|(row, x)| {
-                (x - place).norm() < SUPPORT * self.radius && self.book.page(row, x) == page
+                (x - place).norm() < self.tuning.support * self.radius
+                    && self.book.page(row, x) == page
             })
         })
     }

@@ -1,10 +1,11 @@
 //! A curve that ends where the sheets that meet in it do.
 
-use super::curve_end::{self, CurveEnd, REACH};
+use super::curve_end::{self, CurveEnd};
 use super::page_sheets::PageSheets;
 use super::patch::PATCH_POINTS;
 use super::rim::Rim;
 use super::tolerance::{Tolerance, at_least, vectors};
+use crate::tuning::{BookEndTuning, RimTuning};
 use crosscap_core::{
     Decomposition, Error, Link, LocalPoints, Located, Rejection, SingularityModel,
 };
@@ -23,21 +24,8 @@ use std::f64::consts::PI;
 #[derive(Clone, Copy, Debug)]
 pub struct BookEnd {
     tolerance: Tolerance,
+    tuning: BookEndTuning,
 }
-
-/// Least share of the points that each page holds.
-const LEAST_SHARE: f64 = 0.03;
-/// Least sine of the angle of two sheets where they end, 20 degrees: at a pinch point it goes to zero.
-const LEAST_SINE: f64 = 0.34;
-/// Least cosine of the angle of the curve and the way out of a sheet.
-const LEAST_CROSSING: f64 = 0.5;
-/// The curve meets the boundaries at most so many spacings of the points of a page apart: each runs inside the true
-/// one by about half a spacing, and a page on one side has nothing to hold its parabola beyond the curve.
-const MOST_APART: f64 = 2.0;
-/// The same in ep.
-const MOST_APART_EP: f64 = 3.0;
-/// Farthest that the center is from the curve, as a share of the radius.
-const LARGEST_STEP: f64 = 0.6;
 
 /// Labels: the point and the curve; then those of rims and seams, then cells.
 const POINT: u8 = 0;
@@ -52,7 +40,13 @@ impl BookEnd {
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
             tolerance: Tolerance::new(dp, ep)?,
+            tuning: BookEndTuning::MEASURED,
         })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: BookEndTuning) -> Self {
+        Self { tuning, ..self }
     }
 
     /// The sheets and their boundaries.
@@ -74,11 +68,11 @@ impl BookEnd {
         local: &LocalPoints<'_>,
     ) -> Result<Fit, Rejection> {
         let (points, radius, ep) = (&all[..local.fitted], local.radius, self.tolerance.ep);
-        let center = all[local.center];
+        let (center, tuning) = (all[local.center], &self.tuning);
         let residual = self.follow(&book, points, radius)?;
-        book.are_held(points, LEAST_SHARE)?;
+        book.are_held(points, tuning.share)?;
         let meet = |x| {
-            book.meet(x, LARGEST_STEP * radius)
+            book.meet(x, tuning.step * radius)
                 .ok_or(Rejection::NoRealSolution)
         };
         let near = meet(center)?;
@@ -89,20 +83,20 @@ impl BookEnd {
         } else {
             along
         };
-        let rims = rims(&book, points, near, way, radius)?;
+        let rims = rims(&book, points, [near, way], radius, &tuning.rim)?;
         let crossings = rims
             .iter()
             .flatten()
-            .map(|rim| rim.crossing(LEAST_CROSSING));
+            .map(|rim| rim.crossing(tuning.crossing));
         let crossings: Option<Vec<Vector3<f64>>> = crossings.collect();
         let crossings = crossings.ok_or(Rejection::NoRealSolution)?;
         let middle = crossings.iter().sum::<Vector3<f64>>() / crossings.len().max(1) as f64;
         let end = meet(farthest_on(&book, points, way, middle, ep, &rims))?;
         let spacing = radius * (0.5 * PI * book.count() as f64 / points.len() as f64).sqrt();
-        let most = (MOST_APART * spacing).max(MOST_APART_EP * ep);
+        let most = (tuning.apart * spacing).max(tuning.apart_ep * ep);
         let apart = (crossings.iter()).any(|x| crossings.iter().any(|y| (x - y).norm() > most));
-        let beyond = (end - center).norm() > REACH * radius;
-        if crossings.is_empty() || apart || beyond || book.sine(&end) < LEAST_SINE {
+        let beyond = (end - center).norm() > tuning.end.reach * radius;
+        if crossings.is_empty() || apart || beyond || book.sine(&end) < tuning.sine {
             return Err(Rejection::NoRealSolution);
         }
         let names = Names::of(&book, &rims);
@@ -115,7 +109,8 @@ impl BookEnd {
             end,
             residual,
             ep,
-            radius,
+            reach: tuning.step * radius,
+            witness: tuning.end.witness,
         })
     }
 
@@ -131,8 +126,9 @@ impl BookEnd {
             .collect();
         let sum = off.iter().map(|d| d * d).sum();
         let residual = self.tolerance.residual(sum, points.len())?;
-        curve_end::gains(residual, points, radius)?;
-        curve_end::follows(off.into_iter(), residual, self.tolerance.ep)?;
+        curve_end::gains(residual, points, radius, &self.tuning.end)?;
+        let ep = self.tolerance.ep;
+        curve_end::follows(off.into_iter(), residual, ep, &self.tuning.end)?;
         Ok(residual)
     }
 }
@@ -160,9 +156,9 @@ fn farthest_on(
 fn rims(
     book: &PageSheets,
     points: &[Vector3<f64>],
-    near: Vector3<f64>,
-    way: Vector3<f64>,
+    [near, way]: [Vector3<f64>; 2],
     radius: f64,
+    tuning: &RimTuning,
 ) -> Result<Vec<Option<Rim>>, Rejection> {
     let rim = |(k, sheet): (usize, &super::page_sheets::PageSheet)| {
         let own = points.iter().zip(&book.sheets.owner);
@@ -172,7 +168,7 @@ fn rims(
             _ => None,
         };
         let patch = &book.sheets.patches[k];
-        match Rim::of(patch, own.collect(), near, way, half, radius) {
+        match Rim::of(patch, own.collect(), near, way, half, radius, tuning) {
             Ok(rim) => Ok(Some(rim)),
             Err(Rejection::EmptyStratum { .. }) if half.is_none() => Ok(None),
             Err(other) => Err(other),
@@ -234,7 +230,9 @@ struct Fit {
     end: Vector3<f64>,
     residual: f64,
     ep: f64,
-    radius: f64,
+    /// How far places on the curve are looked for.
+    reach: f64,
+    witness: f64,
 }
 
 impl CurveEnd for Fit {
@@ -267,12 +265,16 @@ impl CurveEnd for Fit {
         self.ep
     }
 
+    fn witness(&self) -> f64 {
+        self.witness
+    }
+
     fn locate(&self, row: usize) -> (u8, Vector3<f64>, u8) {
         let x = self.all[row];
         let page = self.book.page(row, &x);
         let sheet = usize::from(self.book.sheets.owner[row]);
         let (rim_name, cell) = (self.names.rims[page], self.names.cell_of[page]);
-        let curve = (self.book.meet(x, LARGEST_STEP * self.radius))
+        let curve = (self.book.meet(x, self.reach))
             .map(|place| (place, (place - x).norm(), self.way.dot(&(self.end - place))));
         let pages = self.book.count() as u8;
         let Some(rim) = &self.rims[sheet] else {

@@ -138,9 +138,9 @@ impl ModelName {
             Self::CurveOnSheet => {
                 Box::new(CurveOnSheet::new(dp, ep)?.tuned(tuning.curve_and_sheet))
             }
-            Self::PinchPoint => Box::new(PinchPoint::new(dp, ep)?),
-            Self::Book => Box::new(Book::new(dp, ep)?),
-            Self::BookEnd => Box::new(BookEnd::new(dp, ep)?),
+            Self::PinchPoint => Box::new(PinchPoint::new(dp, ep)?.tuned(tuning.pinch_point)),
+            Self::Book => Box::new(Book::new(dp, ep)?.tuned(tuning.book)),
+            Self::BookEnd => Box::new(BookEnd::new(dp, ep)?.tuned(tuning.book_end)),
         })
     }
 }

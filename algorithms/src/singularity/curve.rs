@@ -14,7 +14,7 @@ pub struct BareCurve {
     tolerance: Tolerance,
 }
 
-/// Fewest points.
+/// Fewest points: a curve of two quadratic heights has six coefficients.
 const LEAST_POINTS: usize = 6;
 
 impl BareCurve {

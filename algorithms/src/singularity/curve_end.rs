@@ -1,22 +1,19 @@
 //! What the models of the ends of double curves have in common: when they are believed, and what they say of rows.
 
 use super::patch::off_one_sheet;
+use crate::tuning::CurveEndTuning;
 use crosscap_core::{Decomposition, Label, LocalPoints, Located, Rejection, Stratum};
 use nalgebra::Vector3;
 
-/// Greatest share of the points farther than ep from the surface.
-const MOST_ASTRAY: f64 = 0.03;
-/// The surface must be followed this much better than by one quadratic patch.
-const GAIN: f64 = 0.5;
-/// The end lies within this share of the radius.
-pub(super) const REACH: f64 = 0.7;
-/// A point off the curves tells where they are up to this many ep.
-const WITNESS_REACH: f64 = 3.0;
-
 /// Refuses a fit that is not much better than one quadratic patch.
-pub(super) fn gains(residual: f64, points: &[Vector3<f64>], radius: f64) -> Result<(), Rejection> {
+pub(super) fn gains(
+    residual: f64,
+    points: &[Vector3<f64>],
+    radius: f64,
+    tuning: &CurveEndTuning,
+) -> Result<(), Rejection> {
     let simpler = off_one_sheet(points, radius);
-    match residual > GAIN * simpler {
+    match residual > tuning.gain * simpler {
         true => Err(Rejection::SimplerModelFits { residual, simpler }),
         false => Ok(()),
     }
@@ -27,8 +24,9 @@ pub(super) fn follows(
     off: impl ExactSizeIterator<Item = f64>,
     residual: f64,
     ep: f64,
+    tuning: &CurveEndTuning,
 ) -> Result<(), Rejection> {
-    let most = MOST_ASTRAY * off.len() as f64;
+    let most = tuning.astray * off.len() as f64;
     match off.filter(|&d| d > ep).count() as f64 > most {
         true => Err(Rejection::PoorFit {
             residual,
@@ -55,6 +53,8 @@ pub(super) trait CurveEnd {
     fn residual(&self) -> f64;
     /// Curve tolerance.
     fn ep(&self) -> f64;
+    /// A point off the curves tells where they are up to this many ep.
+    fn witness(&self) -> f64;
     /// Label of a row, the nearest place on a curve, and how many cells meet there.
     fn locate(&self, row: usize) -> (u8, Vector3<f64>, u8);
 
@@ -64,7 +64,7 @@ pub(super) trait CurveEnd {
         let dimension = self.strata()[usize::from(label)];
         let own = self.points()[row];
         let offset = (place - own).norm();
-        let (place, offset) = match dimension < 2 || offset < WITNESS_REACH * self.ep() {
+        let (place, offset) = match dimension < 2 || offset < self.witness() * self.ep() {
             true => (place, offset),
             false => (own, f64::INFINITY),
         };

@@ -9,6 +9,8 @@ use nalgebra::Vector3;
 
 /// Most pages that labels are given to.
 pub(super) const MOST_PAGES: usize = 60;
+/// Sheets that meet at a smaller angle (sine) do not locate a curve.
+const LEAST_SINE: f64 = 0.15;
 /// Where the sides of a sheet are told apart, in radii from the curve.
 const OUT: f64 = 0.5;
 
@@ -139,7 +141,8 @@ impl PageSheets {
         let mut which = [0usize; MOST_PAGES];
         let count = self.of.len();
         (which.iter_mut().enumerate()).for_each(|(k, w)| *w = k);
-        self.sheets.meet(&which[..count], 2, from, reach)
+        self.sheets
+            .meet(&which[..count], 2, from, reach, LEAST_SINE)
     }
 
     /// Greatest sine of the angle of two sheets at a place.

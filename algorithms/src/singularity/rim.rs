@@ -2,14 +2,11 @@
 
 use super::envelope::Envelope;
 use super::patch::QuadraticPatch;
+use crate::tuning::RimTuning;
 use crosscap_core::Rejection;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// Points that would have to lie beyond the boundary.
-const LEAST_MISSING: f64 = 10.0;
-/// Greatest curvature of the parabola, in units of one over the radius.
-const MOST_BEND: f64 = 3.0;
 /// Times that the parabola is fitted, each time upright over its own tangent.
 const ROUNDS: usize = 3;
 /// Steps towards the place in which the curve meets the parabola.
@@ -42,6 +39,7 @@ impl Rim {
         way: Vector3<f64>,
         half: Option<Vector3<f64>>,
         radius: f64,
+        tuning: &RimTuning,
     ) -> Result<Self, Rejection> {
         let normal = patch.height(&near).1.normalize();
         let upright = |out: Vector3<f64>| {
@@ -63,14 +61,14 @@ impl Rim {
             let slope = rim.envelope.slope(rim.envelope.foot([0.0, 0.0]));
             rim = upright((rim.out - rim.along * slope).normalize())?;
         }
-        if rim.envelope.bend().abs() * radius > MOST_BEND {
+        if rim.envelope.bend().abs() * radius > tuning.bend {
             return Err(Rejection::NoRealSolution);
         }
         let side = half.map(|out| rim.along.dot(&out));
         let beyond = rim.area_beyond(radius, side);
         let whole = PI * radius * radius * if half.is_some() { 0.5 } else { 1.0 };
         let inside = (whole - beyond).max(f64::MIN_POSITIVE);
-        if points.len() as f64 * beyond / inside < LEAST_MISSING {
+        if points.len() as f64 * beyond / inside < tuning.missing {
             return Err(Rejection::EmptyStratum {
                 stratum: 0,
                 found: 0,

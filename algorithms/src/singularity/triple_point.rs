@@ -61,6 +61,8 @@ struct Fit {
     apex: Vector3<f64>,
     /// How far a point is moved at most.
     reach: f64,
+    /// Least sine at which sheets meet.
+    sine: f64,
     labels: Vec<u8>,
     residual: f64,
 }
@@ -83,7 +85,7 @@ impl TriplePoint {
         let sheets = Sheets::new(&planes, &all, count, local.radius, |_, d, _| d);
         let reach = self.tuning.reach * local.radius;
         let apex = sheets
-            .meet(&[0, 1, 2], 3, all[local.center], reach)
+            .meet(&[0, 1, 2], 3, all[local.center], reach, self.tuning.meet)
             .ok_or(Rejection::NoRealSolution)?;
         let mut fit = Fit {
             labels: vec![0; all.len()],
@@ -91,6 +93,7 @@ impl TriplePoint {
             sheets,
             apex,
             reach,
+            sine: self.tuning.meet,
             residual: 0.0,
         };
         let (sum, held) = fit.label(count, self.tolerance.ep);
@@ -152,7 +155,10 @@ impl Fit {
             arc @ 1..=6 => {
                 let third = usize::from((arc - 1) / 2);
                 let pair = [(third + 1) % 3, (third + 2) % 3];
-                (1, Some(self.sheets.meet(&pair, 2, x, self.reach)?))
+                (
+                    1,
+                    Some(self.sheets.meet(&pair, 2, x, self.reach, self.sine)?),
+                )
             }
             _ => (2, None),
         };

@@ -124,6 +124,8 @@ struct Fit {
     /// How far a center is moved, how far from the junction the cells must have points, and from where on a point
     /// tells where the junction is.
     reach: [f64; 3],
+    /// Least sine at which sheets meet.
+    sine: f64,
 }
 
 impl YJunction {
@@ -170,6 +172,7 @@ impl YJunction {
             sheets,
             labels,
             residual,
+            sine: tuning.meet,
             reach: [
                 tuning.step * radius,
                 tuning.support * radius,
@@ -186,7 +189,7 @@ impl Fit {
         let x = self.all[row];
         let on_curve = self.labels[row] == 0;
         let place = (self.sheets)
-            .meet(&[0, 1, 2], 2, x, step)
+            .meet(&[0, 1, 2], 2, x, step, self.sine)
             .filter(|p| on_curve || (p - x).norm() < witness)
             .filter(|p| self.supports(p));
         if on_curve && place.is_none() {

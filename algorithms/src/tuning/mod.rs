@@ -4,10 +4,12 @@
 //! separation dl), so that none of them knows the unit of the data. What was measured is in the guide, chapter
 //! on decisions; what is not said there to be measured was chosen once and never varied.
 
+mod ends;
 mod front;
 mod models;
 mod preparation;
 
+pub use ends::{BookEndTuning, BookTuning, CurveEndTuning, PinchPointTuning, RimTuning};
 pub use front::FrontTuning;
 pub use models::{
     BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,

@@ -1,6 +1,7 @@
 //! Entering what a model says about the end of a curve.
 
-use super::{Answer, EndRegion};
+use super::part::Answer;
+use super::region::EndRegion;
 use crate::stratify::site::{On, StratumKind};
 use crate::stratify::strata::Strata;
 use crate::tuning::EndTuning;

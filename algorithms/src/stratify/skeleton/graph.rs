@@ -1,9 +1,10 @@
 //! The graph of the points of a kind of curve, with the corners behind them.
 
+use super::Skeleton;
 use super::ends::{bridges, free_ends};
+use super::ground::Ground;
 use super::nodes::Nodes;
 use super::sweep::components;
-use super::{Ground, Skeleton};
 use crate::stratify::site::StratumKind;
 use crosscap_core::{Label, Row, Scalar, Table};
 

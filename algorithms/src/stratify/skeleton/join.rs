@@ -1,6 +1,7 @@
 //! Chains that stop at nothing are joined.
 
-use super::{Ground, Skeleton};
+use super::Skeleton;
+use super::ground::Ground;
 use crosscap_core::{CurveEdge, Landmark, Scalar, Table};
 
 impl Skeleton {

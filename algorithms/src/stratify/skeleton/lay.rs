@@ -1,10 +1,11 @@
 //! Landmarks and chain edges along the parts of a kind of curve.
 
+use super::Skeleton;
 use super::ends::free_ends;
 use super::graph::CurveGraph;
+use super::ground::Ground;
 use super::nodes::Nodes;
 use super::sweep::{adjacent, sweep, without_triangles};
-use super::{Ground, Skeleton};
 use crate::stratify::site::StratumKind;
 use crosscap_core::{CurveEdge, Landmark, Row, Scalar};
 

@@ -6,19 +6,20 @@
 
 mod ends;
 mod graph;
+mod ground;
 mod join;
 mod lay;
 mod nodes;
 mod sweep;
 mod thin;
 
-use super::analysis::{Analyzer, Fitter};
+use super::analysis::Analyzer;
 use super::atlas::{Atlas, FitId, Reference};
 use super::site::StratumKind;
 use super::strata::Strata;
 use super::stratification::PointStratum;
-use crate::tuning::SkeletonTuning;
-use crosscap_core::{CurveEdge, Error, Landmark, PointCloud, Row, Scalar, SingularityModel, Table};
+use crosscap_core::{CurveEdge, Error, Landmark, Row, Scalar, SingularityModel, Table};
+use ground::Ground;
 use thin::thin;
 
 /// Landmarks on points and curves, with the chains.
@@ -38,22 +39,6 @@ pub(super) struct Skeleton {
     corner_fits: Vec<FitId>,
     /// Those that label the points of the cloud.
     labelling: Vec<FitId>,
-}
-
-/// What the skeleton is laid on.
-struct Ground<'g, 'a, S: Scalar> {
-    fitter: &'g Fitter<'a, S>,
-    strata: &'g Strata,
-    places: &'g PointCloud<f64>,
-    tuning: &'g SkeletonTuning,
-    dl: f64,
-}
-
-impl<S: Scalar> Ground<'_, '_, S> {
-    /// Distance of the places of two rows.
-    fn distance(&self, a: Row, b: Row) -> f64 {
-        self.places.squared_distance(a.index(), b.index()).sqrt()
-    }
 }
 
 impl Skeleton {

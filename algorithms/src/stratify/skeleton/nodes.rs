@@ -1,7 +1,8 @@
 //! The points of a kind of curve that chains are laid over, with what fits about corners say of them.
 
+use super::Skeleton;
+use super::ground::Ground;
 use super::thin::thin;
-use super::{Ground, Skeleton};
 use crate::stratify::site::StratumKind;
 use crosscap_core::{Label, Row, Scalar};
 

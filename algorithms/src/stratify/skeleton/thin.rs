@@ -1,6 +1,6 @@
 //! Points of a stratum, thinned out.
 
-use super::Ground;
+use super::ground::Ground;
 use crate::stratify::site::StratumKind;
 use crosscap_core::{Row, Scalar, Table};
 
