@@ -150,7 +150,7 @@ fn points_that_fill_a_space_are_told_and_without_the_column_it_is_verified() {
     let mut random = Random::new(7);
     let rows = (0..3000).flat_map(|_| [(); 3].map(|()| random.uniform()));
     let solid = PointCloud::new(3, rows.collect()).unwrap();
-    let search = Parameters::auto().tries(2).reconstruct(&solid).unwrap();
+    let search = Parameters::auto().tries(3).reconstruct(&solid).unwrap();
     let refusal = search.into_verified(Some(&solid)).unwrap_err();
     assert_eq!(refusal.faults[0].kind, FaultKind::Dimension, "{refusal}");
     assert!(matches!(refusal.advice, Advice::FewerDimensions));

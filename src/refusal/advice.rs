@@ -73,7 +73,10 @@ impl Advice {
             Self::MorePoints((count.unwrap_or(0) as f64 * times.max(LEAST_INCREASE)) as usize)
         };
         let meets = matches!(first.kind, FaultKind::Unclaimed | FaultKind::Dimension);
-        if meets && parameters.is_some_and(|run| run.models != ModelName::AUTO) {
+        // What is so nearly everywhere is no place where sheets meet.
+        let local = points.is_none_or(|points| 2 * first.count < points);
+        let asked_all = parameters.is_none_or(|run| run.models == ModelName::AUTO);
+        if meets && local && !asked_all {
             return Self::AllModels;
         }
         match first.kind {
