@@ -18,7 +18,7 @@ struct Case {
     links: &'static [(LinkKind, Option<usize>)],
 }
 
-const CASES: [Case; 13] = [
+const CASES: [Case; 11] = [
     Case {
         surface: "three_spheres",
         points: 60_000,
@@ -117,24 +117,6 @@ const CASES: [Case; 13] = [
         models: &ModelName::AUTO,
         betti: [1, 0, 0],
         links: &[(LinkKind::JunctionEnd, Some(2))],
-    },
-    Case {
-        surface: "plate_on_plate",
-        points: 5_000,
-        eps: 0.226,
-        dl: 0.0905,
-        models: &ModelName::AUTO,
-        betti: [1, 0, 0],
-        links: &[(LinkKind::SideSheetEnd, Some(2))],
-    },
-    Case {
-        surface: "book_5",
-        points: 8_000,
-        eps: 0.246,
-        dl: 0.0983,
-        models: &ModelName::AUTO,
-        betti: [1, 0, 0],
-        links: &[(LinkKind::BookEnd, Some(2)), (LinkKind::Book, None)],
     },
     Case {
         surface: "three_squares",

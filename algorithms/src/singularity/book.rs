@@ -83,9 +83,9 @@ impl Book {
             };
             !known && aside.norm() <= tuning.off_center * radius
         })?;
-        let off = || points.iter().enumerate().map(|(row, x)| book.off(row, x));
-        let residual = (self.tolerance).residual(off().map(|d| d * d).sum(), points.len())?;
-        let off: Vec<f64> = off().collect();
+        let off: Vec<f64> = points.iter().map(|x| book.off(x)).collect();
+        let sum = off.iter().map(|d| d * d).sum();
+        let residual = self.tolerance.residual(sum, points.len())?;
         curve_end::follows(off.into_iter(), residual, self.tolerance.ep, &tuning.end)?;
         book.are_held(points, tuning.share)?;
         Ok(Fit {

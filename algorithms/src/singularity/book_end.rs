@@ -121,9 +121,7 @@ impl BookEnd {
         points: &[Vector3<f64>],
         radius: f64,
     ) -> Result<f64, Rejection> {
-        let off: Vec<f64> = (points.iter().enumerate())
-            .map(|(row, x)| book.off(row, x))
-            .collect();
+        let off: Vec<f64> = points.iter().map(|x| book.off(x)).collect();
         let sum = off.iter().map(|d| d * d).sum();
         let residual = self.tolerance.residual(sum, points.len())?;
         curve_end::gains(residual, points, radius, &self.tuning.end)?;

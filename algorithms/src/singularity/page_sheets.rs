@@ -63,7 +63,17 @@ impl PageSheets {
         Ok(Self::over(pages, all, fitted, radius))
     }
 
+    /// Patches over pages, and again over where these patches meet: which side of the line a point is on decides what it is
+    /// fitted to, and the line as it was read is a little off.
     fn over(pages: Pages, all: &[Vector3<f64>], fitted: usize, radius: f64) -> Self {
+        let first = Self::laid(pages, all, fitted, radius);
+        match first.settled() {
+            Some(pages) => Self::laid(pages, all, fitted, radius),
+            None => first,
+        }
+    }
+
+    fn laid(pages: Pages, all: &[Vector3<f64>], fitted: usize, radius: f64) -> Self {
         let parts = parts(&pages);
         let planes: Vec<Flat<3>> = (parts.iter())
             .map(|part| {
@@ -92,6 +102,27 @@ impl PageSheets {
         out
     }
 
+    /// The pages about the line in which the patches meet.
+    fn settled(&self) -> Option<Pages> {
+        let place = self.meet(self.pages.place, self.radius)?;
+        let normals: Vec<Vector3<f64>> = (self.sheets.patches.iter())
+            .map(|patch| patch.height(&place).1.normalize())
+            .collect();
+        let pairs = (0..normals.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+        let along = pairs
+            .map(|(a, b)| normals[a].cross(&normals[b]))
+            .max_by(|x, y| x.norm_squared().total_cmp(&y.norm_squared()))
+            .filter(|along| along.norm() > LEAST_SINE)?;
+        let along = along.normalize() * along.dot(&self.pages.along).signum();
+        let out = self.pages.out.iter();
+        let out = out.map(|out| (out - along * along.dot(out)).normalize());
+        Some(Pages {
+            place,
+            along,
+            out: out.collect(),
+        })
+    }
+
     /// What tells the two sides of a sheet apart: the sheet that is most at right angles to it.
     fn divided(&self, sheet: usize, first: usize, planes: &[Flat<3>]) -> PageSheet {
         let normal = |k: usize| planes[k].normals[0];
@@ -117,11 +148,13 @@ impl PageSheets {
         6 * self.of.len()
     }
 
-    /// Distance of the point of a row from its sheet.
-    pub(super) fn off(&self, row: usize, x: &Vector3<f64>) -> f64 {
-        let sheet = usize::from(self.sheets.owner[row]);
-        let d = self.sheets.patches[sheet].signed_distance(x);
-        off(&self.pages, &self.of[sheet].pages, d, x)
+    /// Distance of a point from the nearest sheet: those about the curve can have been given to another before its place was known
+    /// exactly.
+    pub(super) fn off(&self, x: &Vector3<f64>) -> f64 {
+        let patches = self.sheets.patches.iter().zip(&self.of);
+        patches
+            .map(|(patch, sheet)| off(&self.pages, &sheet.pages, patch.signed_distance(x), x))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Page of the point of a row.

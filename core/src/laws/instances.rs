@@ -229,12 +229,21 @@ pub fn t_junction(draw: &mut Draw) -> Instance {
     half_planes(draw, &[0.0, angle, PI])
 }
 
-/// Five to eight half planes on a line, any two of them at 36 degrees or more.
+/// Half planes on a line, any two of them at 40 degrees or more: five, or three or four planes that go through the line. No two
+/// are nearly opposite and not quite: these could as well be one sheet that bends.
 pub fn book(draw: &mut Draw) -> Instance {
-    let pages = 5 + (draw.between(0.0, 4.0) as usize).min(3);
-    let angles: Vec<f64> = (0..pages)
-        .map(|k| (k as f64 + draw.between(-0.1, 0.1)) * std::f64::consts::TAU / pages as f64)
-        .collect();
+    use std::f64::consts::{PI, TAU};
+    let pages = [5, 6, 8][(draw.between(0.0, 3.0) as usize).min(2)];
+    let turn = TAU / pages as f64;
+    let angles: Vec<f64> = match pages {
+        5 => (0..5)
+            .map(|k| (k as f64 + draw.between(-0.1, 0.1)) * turn)
+            .collect(),
+        _ => (0..pages / 2)
+            .map(|k| k as f64 * turn + draw.between(-0.02, 0.02))
+            .flat_map(|angle| [angle, angle + PI])
+            .collect(),
+    };
     half_planes(draw, &angles)
 }
 
