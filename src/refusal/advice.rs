@@ -55,15 +55,17 @@ const CLOSEST: f64 = 1.3;
 const LEAST_INCREASE: f64 = 1.5;
 
 impl Advice {
-    /// What to do about faults, by the one of most places.
-    /// Of a run with these parameters on so many `points`, where they are known.
+    /// What to do about faults, by the one of most places. On so many `points`, where they are known, the parameters of `tried`
+    /// were tried, and the faults are those of the `chosen` ones.
     pub(super) fn on(
         faults: &[Fault],
         outcome: &Result<Outcome, Error>,
         points: Option<usize>,
-        parameters: Option<&Parameters>,
+        tried: &[&Parameters],
+        chosen: usize,
     ) -> Self {
         let report = outcome.as_ref().ok().map(|outcome| &outcome.report);
+        let parameters = tried.get(chosen).copied();
         let parameters = parameters.or(report.map(|report| &report.parameters));
         let Some(first) = faults.first() else {
             return Self::MoreTries;
@@ -75,7 +77,8 @@ impl Advice {
         let meets = matches!(first.kind, FaultKind::Unclaimed | FaultKind::Dimension);
         // What is so nearly everywhere is no place where sheets meet.
         let local = points.is_none_or(|points| 2 * first.count < points);
-        let asked_all = parameters.is_none_or(|run| run.models == ModelName::AUTO);
+        let mut runs = tried.iter().copied().chain(parameters).peekable();
+        let asked_all = runs.peek().is_none() || runs.any(|run| run.models == ModelName::AUTO);
         if meets && local && !asked_all {
             return Self::AllModels;
         }

@@ -20,7 +20,7 @@ pub use kind::FaultKind;
 pub use surroundings::Surroundings;
 
 use crate::auto::{Attempt, Doubt, Search};
-use crate::pipeline::Outcome;
+use crate::pipeline::{Outcome, Parameters};
 use crosscap_core::{Error, Mesh, PointCloud};
 use std::fmt;
 
@@ -57,9 +57,15 @@ impl Refusal {
         points: Option<&PointCloud<f64>>,
     ) -> Self {
         let faults = fault::faults(&outcome, doubt, points);
-        let parameters = attempts.get(chosen).map(|attempt| &attempt.parameters);
+        let tried: Vec<&Parameters> = attempts.iter().map(|a| &a.parameters).collect();
         Self {
-            advice: Advice::on(&faults, &outcome, points.map(PointCloud::len), parameters),
+            advice: Advice::on(
+                &faults,
+                &outcome,
+                points.map(PointCloud::len),
+                &tried,
+                chosen,
+            ),
             faults,
             attempts,
             outcome,
