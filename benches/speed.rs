@@ -18,7 +18,9 @@ use crosscap_algorithms::moments::MomentTree;
 use crosscap_algorithms::surfaces::{Random, RingConformations};
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::files::{PointOptions, read_points, write_points};
-use crosscap_core::{CellNeighborhood, SparseDistances, StratifiedLandmarks, squared_distance};
+use crosscap_core::{
+    CellNeighborhood, Landmark, SparseDistances, StratifiedLandmarks, Table, squared_distance,
+};
 use rustix::time::{ClockId, clock_gettime};
 use serde_json::{Value, json};
 use std::cell::RefCell;
@@ -366,17 +368,17 @@ fn waist(places: PointCloud<f64>) -> Outcome<StratifiedLandmarks<f64>> {
         .map(|center| {
             oracle.within(center, 3.0, &mut near);
             CellNeighborhood {
-                center: center as u32,
-                members: near.iter().map(|x| x.index as u32).collect(),
+                center: Landmark::new(center),
+                members: near.iter().map(|x| Landmark::new(x.index)).collect(),
             }
         })
         .collect();
     let cloud = oracle.cloud();
     let distances = SparseDistances::within(count, &neighborhoods, |a, b| {
-        squared_distance(cloud.point(a as usize), cloud.point(b as usize)).sqrt()
+        squared_distance(cloud.point(a.index()), cloud.point(b.index())).sqrt()
     })?;
     Ok(StratifiedLandmarks {
-        strata: vec![2; count],
+        strata: Table::filled(count, 2),
         curve_edges: Vec::new(),
         neighborhoods,
         distances,

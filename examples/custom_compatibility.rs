@@ -3,7 +3,7 @@
 //! `cargo run --release --example custom_compatibility`
 
 use crosscap_core::laws::{self, Settings};
-use crosscap_core::{ChartTriangle, CompatibilityTest, Meeting};
+use crosscap_core::{ChartTriangle, CompatibilityTest, Landmark, Meeting};
 
 /// What two triangles have in common, by clipping, compared with the hull of their shared corners.
 ///
@@ -107,11 +107,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{} obeys the laws of CompatibilityTest", Clipping.name());
 
     let below = ChartTriangle {
-        corners: [0, 1, 2],
+        corners: [0, 1, 2].map(Landmark::new),
         places: [[0.0, 0.0], [2.0, 0.0], [1.0, -1.0]],
     };
     let above = ChartTriangle {
-        corners: [0, 1, 3],
+        corners: [0, 1, 3].map(Landmark::new),
         places: [[0.0, 0.0], [2.0, 0.0], [1.0, 1.0]],
     };
     println!("{:?}", Clipping.meeting(&below, &above));

@@ -8,8 +8,8 @@ use crosscap::algorithms::surfaces::Random;
 use crosscap::{Parameters, Pipeline};
 use crosscap_core::laws::{self, Scan, Settings};
 use crosscap_core::{
-    CellNeighborhood, LandmarkSelector, MetricSpace, NeighborhoodOracle, PointCloud,
-    SparseDistances, StratifiedLandmarks,
+    CellNeighborhood, Landmark, LandmarkSelector, MetricSpace, NeighborhoodOracle, PointCloud,
+    SparseDistances, StratifiedLandmarks, Table,
 };
 
 /// Points of a cube whose opposite faces are one: what leaves it on one side comes back on the other.
@@ -53,28 +53,26 @@ fn flat_torus(
     let oracle = Scan(&metric);
     let all: Vec<usize> = (0..count).collect();
     let rows = RandomGreedy::new().select(&oracle, &all, &[], dl, 0)?;
+    let rows: Table<Landmark, usize> = rows.into();
     let mut place = vec![None; count];
-    for (k, &row) in rows.iter().enumerate() {
-        place[row] = Some(k as u32);
+    for (k, &row) in rows.each() {
+        place[row] = Some(k);
     }
     let mut near = Vec::new();
     let mut neighborhoods = Vec::new();
     let mut distances = Vec::new();
-    for (center, &row) in rows.iter().enumerate() {
+    for (center, &row) in rows.each() {
         oracle.within(row, 3.0 * dl, &mut near);
         // Sorted by distance, so that the center comes first.
-        let members: Vec<u32> = near.iter().filter_map(|x| place[x.index]).collect();
+        let members: Vec<Landmark> = near.iter().filter_map(|x| place[x.index]).collect();
         for (k, &a) in members.iter().enumerate() {
-            let with = |&b: &u32| (a, b, metric.distance(rows[a as usize], rows[b as usize]));
+            let with = |&b: &Landmark| (a, b, metric.distance(rows[a], rows[b]));
             distances.extend(members[..k].iter().map(with));
         }
-        neighborhoods.push(CellNeighborhood {
-            center: center as u32,
-            members,
-        });
+        neighborhoods.push(CellNeighborhood { center, members });
     }
     Ok(StratifiedLandmarks {
-        strata: vec![2; rows.len()],
+        strata: Table::filled(rows.len(), 2),
         curve_edges: Vec::new(),
         neighborhoods,
         distances: SparseDistances::new(rows.len(), distances)?,

@@ -3,7 +3,7 @@
 //! `cargo run --release --example custom_model`
 
 use crosscap_core::laws::{self, Instances, Settings, instances};
-use crosscap_core::{Decomposition, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{Decomposition, Label, LocalPoints, Rejection, SingularityModel, Stratum};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Two planes, each fitted to the points nearer to it, until nobody changes sides; from several starts.
@@ -153,7 +153,7 @@ impl SingularityModel for AlternatingPlanes {
             strata: [1, 2, 2, 2, 2]
                 .map(|dimension| Stratum { dimension })
                 .to_vec(),
-            labels,
+            labels: labels.into_iter().map(Label::from).collect(),
             cells_at_curve: vec![4],
             residual,
             parameters: 6,

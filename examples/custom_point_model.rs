@@ -5,7 +5,7 @@
 use crosscap::algorithms::surfaces::Random;
 use crosscap::prelude::*;
 use crosscap_core::laws::{self, Draw, Instance, Instances, Settings};
-use crosscap_core::{Decomposition, LocalPoints, Rejection, Stratum};
+use crosscap_core::{Decomposition, Label, LocalPoints, Rejection, Stratum};
 use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen, Vector3};
 use std::f64::consts::{PI, TAU};
 
@@ -146,7 +146,7 @@ impl SingularityModel for DoubleCone {
         };
         Ok(Decomposition {
             strata: [0, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
-            labels,
+            labels: labels.into_iter().map(Label::from).collect(),
             cells_at_curve: vec![],
             residual,
             parameters: 8,

@@ -1,7 +1,10 @@
 //! A way of one's own from a cloud to the waist: charts of the nearest landmarks instead of charts of one radius.
 
 use crosscap::algorithms::stratify::{Analysis, Ground, Stratification, Stratifier, WaistProducer};
-use crosscap::core::{CellNeighborhood, Error, MetricSpace, SparseDistances, StratifiedLandmarks};
+use crosscap::core::{
+    CellNeighborhood, Error, Landmark, MetricSpace, Row, SparseDistances, StratifiedLandmarks,
+    Table,
+};
 use crosscap::prelude::*;
 
 /// Charts of so many landmarks, on surfaces without curves: they grow where points are thin.
@@ -25,7 +28,7 @@ impl Stratifier<f64> for NearestLandmarks {
         Ok(Box::new(Charts {
             size: self.0,
             metric: space.metric(),
-            rows,
+            rows: rows.into_iter().map(Row::new).collect(),
         }))
     }
 
@@ -38,18 +41,18 @@ impl Stratifier<f64> for NearestLandmarks {
 struct Charts<'p> {
     size: usize,
     metric: &'p dyn MetricSpace<Scalar = f64>,
-    rows: Vec<usize>,
+    rows: Table<Landmark, Row>,
 }
 
 impl WaistProducer<f64> for Charts<'_> {
     /// Landmarks that are asked for behind those that were chosen.
-    fn waist(&self, extra: &[usize]) -> Result<Stratification<f64>, Error> {
+    fn waist(&self, extra: &[Row]) -> Result<Stratification<f64>, Error> {
         let mut rows = self.rows.clone();
-        rows.extend(extra.iter().filter(|&&row| self.may_add(row)));
-        let count = rows.len() as u32;
-        let apart = |a: u32, b: u32| (self.metric).distance(rows[a as usize], rows[b as usize]);
-        let around = |center: u32| {
-            let mut members: Vec<u32> = (0..count).collect();
+        rows.extend(extra.iter().copied().filter(|&row| self.may_add(row)));
+        let apart =
+            |a: Landmark, b: Landmark| self.metric.distance(rows[a].index(), rows[b].index());
+        let around = |center: Landmark| {
+            let mut members: Vec<Landmark> = rows.ids().collect();
             // The center itself comes first, at distance 0.
             members.sort_by(|&a, &b| {
                 let order = apart(center, a).total_cmp(&apart(center, b));
@@ -58,9 +61,9 @@ impl WaistProducer<f64> for Charts<'_> {
             members.truncate(self.size);
             CellNeighborhood { center, members }
         };
-        let neighborhoods: Vec<CellNeighborhood> = (0..count).map(around).collect();
+        let neighborhoods: Vec<CellNeighborhood> = rows.ids().map(around).collect();
         let waist = StratifiedLandmarks {
-            strata: vec![2; rows.len()],
+            strata: Table::filled(rows.len(), 2),
             curve_edges: Vec::new(),
             distances: SparseDistances::within(rows.len(), &neighborhoods, apart)?,
             neighborhoods,
@@ -68,8 +71,8 @@ impl WaistProducer<f64> for Charts<'_> {
         Ok(Stratification::new(waist, rows))
     }
 
-    fn may_add(&self, row: usize) -> bool {
-        row < self.metric.len() && !self.rows.contains(&row)
+    fn may_add(&self, row: Row) -> bool {
+        row.index() < self.metric.len() && !self.rows.contains(&row)
     }
 }
 

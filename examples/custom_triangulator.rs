@@ -7,7 +7,7 @@ use crosscap::algorithms::chart::ClassicalScaling;
 use crosscap::algorithms::homology::homology;
 use crosscap::core::laws::{self, Settings};
 use crosscap::core::{
-    Complex, Error, Incomplete, LocalChart, StratifiedLandmarks, Triangulation,
+    Complex, Error, Incomplete, Landmark, LocalChart, StratifiedLandmarks, Table, Triangulation,
     TriangulationCounts, Triangulator,
 };
 use std::collections::BTreeMap;
@@ -20,8 +20,8 @@ impl<C: LocalChart> Consensus<C> {
     fn star(
         &self,
         waist: &StratifiedLandmarks<f64>,
-        members: &[u32],
-    ) -> Result<Vec<[u32; 3]>, Error> {
+        members: &[Landmark],
+    ) -> Result<Vec<[Landmark; 3]>, Error> {
         let k = members.len();
         let between = |i: usize, j: usize| waist.distances.get(members[i], members[j]);
         let matrix: Vec<f64> = (0..k * k)
@@ -55,27 +55,27 @@ impl<C: LocalChart> Consensus<C> {
 impl<C: LocalChart> Triangulator<f64> for Consensus<C> {
     fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
         // How many corners know a triangle.
-        let mut known: BTreeMap<[u32; 3], usize> = BTreeMap::new();
+        let mut known: BTreeMap<[Landmark; 3], usize> = BTreeMap::new();
         for near in &waist.neighborhoods {
             for corners in self.star(waist, &near.members)? {
                 *known.entry(corners).or_default() += 1;
             }
         }
         let count = waist.strata.len();
-        let mut open = vec![false; count];
+        let mut open: Table<Landmark, bool> = Table::filled(count, false);
         for (corners, _) in known.iter().filter(|&(_, &n)| n < 3) {
-            corners.iter().for_each(|&c| open[c as usize] = true);
+            corners.iter().for_each(|&c| open[c] = true);
         }
         known.retain(|_, n| *n == 3);
         Ok(Triangulation {
             complex: Complex::new(
                 count,
-                known.into_keys().collect(),
+                known.into_keys().map(|t| t.map(u32::from)).collect(),
                 waist.curve_edges.clone(),
             )?,
             dropped: Vec::new(),
-            incomplete: (0..count as u32)
-                .filter(|&k| open[k as usize])
+            incomplete: (open.ids())
+                .filter(|&k| open[k])
                 .map(|landmark| Incomplete { landmark })
                 .collect(),
             counts: TriangulationCounts {

@@ -7,7 +7,9 @@ use crosscap::algorithms::homology::homology;
 use crosscap::algorithms::predicate::PlanarPredicate;
 use crosscap::algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
 use crosscap::algorithms::tuning::FrontTuning;
-use crosscap::core::{CellNeighborhood, SparseDistances, StratifiedLandmarks, Triangulator};
+use crosscap::core::{
+    CellNeighborhood, Landmark, SparseDistances, StratifiedLandmarks, Table, Triangulator,
+};
 
 /// Great-circle distances of `n` places spread over the unit sphere: stands for a measured matrix.
 fn measured(n: usize) -> Vec<f64> {
@@ -46,22 +48,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     .then(a.cmp(&b))
             });
             CellNeighborhood {
-                center: center as u32,
-                members: members.into_iter().map(|m| m as u32).collect(),
+                center: Landmark::new(center),
+                members: members.into_iter().map(Landmark::new).collect(),
             }
         })
         .collect();
     // Two members of one chart are nearer than two radii.
     let pairs = (0..n).flat_map(|a| (0..a).map(move |b| (a, b)));
     let kept = pairs.filter(|&(a, b)| distance(a, b) < 2.0 * radius);
+    let kept = kept.map(|(a, b)| (Landmark::new(a), Landmark::new(b), distance(a, b)));
     let waist = StratifiedLandmarks {
-        strata: vec![2; n],
+        strata: Table::filled(n, 2),
         curve_edges: Vec::new(),
         neighborhoods,
-        distances: SparseDistances::new(
-            n,
-            kept.map(|(a, b)| (a as u32, b as u32, distance(a, b))),
-        )?,
+        distances: SparseDistances::new(n, kept)?,
     };
     waist.check()?;
     let triangulation = AdvancingFront {

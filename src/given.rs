@@ -1,6 +1,6 @@
 //! Reconstruction from distances alone.
 
-use crate::pipeline::{Input, Outcome, Parameters, Pipeline};
+use crate::pipeline::{GivenSpace, Input, Outcome, Parameters, Pipeline};
 use crate::spaces::Warning;
 use crosscap_algorithms::metric::{BruteForceOracle, GivenDistances};
 use crosscap_algorithms::scaling::{Scaled, picture_of_metric, scale_metric, scale_patches};
@@ -8,21 +8,7 @@ use crosscap_algorithms::space::Space;
 use crosscap_backends::files::Distances;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{Error, Neighbor, NeighborhoodOracle, SparseDistances};
-use serde::Serialize;
-
-/// What became of distances that were the only input.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct GivenSpace {
-    /// Dimension of the places.
-    pub dimension: usize,
-    /// Largest difference of a known distance and that of the places, unit of the data.
-    pub deviation: f64,
-    /// Whether the places are as good as coordinates: the deviation is at most a hundredth of dl.
-    /// Otherwise they are a picture, and no distance was taken from them.
-    pub exact: bool,
-}
+use crosscap_core::{Error, Neighbor, NeighborhoodOracle, Row, SparseDistances};
 
 /// Places that deviate at most this share of dl from the distances stand for the points.
 const EXACT: f64 = 0.01;
@@ -162,7 +148,7 @@ impl Pipeline {
 
 /// Shortest paths over the distances that are known.
 fn paths(
-    known: &SparseDistances<f64>,
+    known: &SparseDistances<f64, Row>,
     parameters: &Parameters,
     threads: &Threads,
 ) -> Result<(GeodesicMetric<f64>, Vec<Warning>), Error> {
@@ -191,11 +177,11 @@ fn paths(
 }
 
 /// The known distances as a graph: what is not known is not near.
-pub(crate) struct KnownDistances<'a>(pub(crate) &'a SparseDistances<f64>);
+pub(crate) struct KnownDistances<'a>(pub(crate) &'a SparseDistances<f64, Row>);
 
 impl KnownDistances<'_> {
     fn reach(&self, point: usize) -> f64 {
-        self.0.row(point as u32).map(|x| x.1).fold(0.0, f64::max)
+        self.0.row(Row::new(point)).map(|x| x.1).fold(0.0, f64::max)
     }
 
     fn all(&self, center: usize, out: &mut Vec<Neighbor<f64>>) {
@@ -204,8 +190,8 @@ impl KnownDistances<'_> {
             index: center,
             distance: 0.0,
         });
-        out.extend(self.0.row(center as u32).map(|(j, distance)| Neighbor {
-            index: j as usize,
+        out.extend(self.0.row(Row::new(center)).map(|(j, distance)| Neighbor {
+            index: j.index(),
             distance,
         }));
         out.sort_by(|a, b| {

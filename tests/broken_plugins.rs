@@ -19,8 +19,9 @@ use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::execute::Execute;
 use crosscap_core::{
     BallDimension, Balls, Chart, ChartTriangle, CompatibilityTest, CurveEdge, Decomposition,
-    DimensionEstimate, Incomplete, LocalPoints, Located, Meeting, Neighbor, Neighborhood,
-    Rejection, StratifiedLandmarks, TriangleRule, Triangulation, TriangulationCounts, Triangulator,
+    DimensionEstimate, Incomplete, Label, Landmark, LocalPoints, Located, Meeting, Neighbor,
+    Neighborhood, Rejection, Row, StratifiedLandmarks, TriangleRule, Triangulation,
+    TriangulationCounts, Triangulator,
 };
 
 const NAME: &str = "the-broken-one";
@@ -461,7 +462,7 @@ struct Lost(fn(&mut Triangulation));
 impl Triangulator<f64> for Lost {
     fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
         let count = waist.strata.len();
-        let open = (0..count as u32).map(|landmark| Incomplete { landmark });
+        let open = waist.strata.ids().map(|landmark| Incomplete { landmark });
         let mut found = Triangulation {
             complex: Complex::new(count, vec![], waist.curve_edges.clone())?,
             dropped: vec![],
@@ -494,7 +495,7 @@ fn triangulators() {
     let edge = by(|t| t.complex.curve_edges.push(CurveEdge::new(0, 1, 4)));
     names(edge, "answer: the curve edges", 1200);
     names(
-        by(|t| t.dropped = vec![3, 2]),
+        by(|t| t.dropped = [3, 2].map(Landmark::new).to_vec()),
         "answer: what was dropped",
         1200,
     );
@@ -525,7 +526,7 @@ impl Stratifier<f64> for Astray {
 }
 
 impl WaistProducer<f64> for Spoiling<'_> {
-    fn waist(&self, extra: &[usize]) -> Result<Stratification<f64>, Error> {
+    fn waist(&self, extra: &[Row]) -> Result<Stratification<f64>, Error> {
         let mut waist = self.usual.waist(extra)?;
         (self.spoil)(&mut waist);
         Ok(waist)
@@ -540,9 +541,10 @@ fn stratifiers() {
             .reconstruct(&sphere())
     };
     assert!(by(|_| ()).unwrap().is_verified());
+    const FIFTH: Landmark = Landmark::new(5);
     let law = "answer: every landmark stands for a row";
-    names(by(|s| s.rows[5] = s.rows[4]), law, 1200);
-    names(by(|s| s.rows[5] = 1200), law, 1200);
+    names(by(|s| s.rows[FIFTH] = s.rows[Landmark::new(4)]), law, 1200);
+    names(by(|s| s.rows[FIFTH] = Row::new(1200)), law, 1200);
     names(by(|s| s.rows.truncate(5)), law, 1200);
 }
 
@@ -634,10 +636,10 @@ fn models() {
     spoilt("partition", |fit, _| {
         fit.labels.pop();
     });
-    spoilt("partition", |fit, _| fit.labels.push(1));
+    spoilt("partition", |fit, _| fit.labels.push(Label::new(1)));
     spoilt("partition", |fit, _| {
         if let Some(label) = fit.labels.last_mut() {
-            *label = 200;
+            *label = Label::new(200);
         }
     });
     spoilt("partition", |fit, _| fit.strata.truncate(2));
@@ -870,7 +872,7 @@ fn compatibility_tests() {
     names(by(|_, _| Meeting::Overlap), "reference", 1200);
     // Right but for triangles with large numbers, which no known pair has.
     let late = |a: &ChartTriangle, b: &ChartTriangle| {
-        if a.corners[0] > 20 && b.corners[1] > 40 {
+        if a.corners[0].index() > 20 && b.corners[1].index() > 40 {
             Meeting::Overlap
         } else {
             PlanarPredicate.meeting(a, b)

@@ -5,7 +5,7 @@ use crosscap::{MetricName, Neighborhoods, Spaces};
 use crosscap_algorithms::certificate::Level;
 use crosscap_backends::files::Distances;
 use crosscap_backends::geodesic::EdgeRule;
-use crosscap_core::SparseDistances;
+use crosscap_core::{Row, SparseDistances};
 
 fn points(surface: &str, count: usize) -> PointCloud<f64> {
     let surface = SampleSurface::find(surface).unwrap();
@@ -27,7 +27,7 @@ fn sparse(cloud: &PointCloud<f64>, radius: f64, of: impl Fn(f64) -> f64) -> Dist
     let pairs = (0..n).flat_map(|a| (0..a).map(move |b| (a, b)));
     let near = pairs.filter_map(|(a, b)| {
         let d = of(cloud.squared_distance(a, b).sqrt());
-        (d < radius).then_some((a as u32, b as u32, d))
+        (d < radius).then_some((Row::new(a), Row::new(b), d))
     });
     Distances::Sparse(SparseDistances::new(n, near).unwrap())
 }

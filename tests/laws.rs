@@ -13,8 +13,8 @@ use crosscap_algorithms::metric::{
 };
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::{
-    BareCurve, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, OneSheet, TriplePoint,
-    TwoPlanes, YJunction,
+    BareCurve, Book, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, OneSheet,
+    TriplePoint, TwoPlanes, YJunction,
 };
 use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, MinimumCircumradius, Rules};
 use crosscap_algorithms::tuning::FrontTuning;
@@ -171,6 +171,11 @@ law_tests! {
         settings: settings();
     mod y_junction =
         model(&YJunction::new(0.1, 0.05).unwrap(), &Instances::new(&instances::y_junction)),
+        settings: settings();
+    // Pages are read from the normals of small pieces, and two thirds of the points are the neighborhood.
+    mod t_junction = model(&Book::new(0.1, 0.05).unwrap(), &of(300..=500, &instances::t_junction)),
+        settings: settings();
+    mod book = model(&Book::new(0.1, 0.05).unwrap(), &of(600..=900, &instances::book)),
         settings: settings();
     // Two thirds of them are the neighborhood, and the model asks for 48.
     mod triple_point =

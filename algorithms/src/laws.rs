@@ -7,7 +7,7 @@ use crate::certificate::{CertificateOptions, SpecialPoint, certify};
 use crate::homology::homology;
 use crate::stratify::WaistProducer;
 use crosscap_core::laws::{self, Failures, Findings, Law, LawBroken, Settings};
-use crosscap_core::{Mesh, Scalar};
+use crosscap_core::{Mesh, Row, Scalar};
 
 static LINKS: Law = Law {
     subject: "a mesh",
@@ -59,13 +59,16 @@ pub fn producer<S: Scalar>(
     points: usize,
 ) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &[&ANSWER, &EXTRA, &INDEPENDENCE]);
-    let broken = |law: &'static Law, input: &[usize], found: String| LawBroken {
-        law,
-        input: format!("{points} points, extra rows {input:?}"),
-        found,
-        seed: None,
+    let broken = |law: &'static Law, extra: &[Row], found: String| {
+        let extra: Vec<usize> = extra.iter().map(|row| row.index()).collect();
+        LawBroken {
+            law,
+            input: format!("{points} points, extra rows {extra:?}"),
+            found,
+            seed: None,
+        }
     };
-    let make = |extra: &[usize]| {
+    let make = |extra: &[Row]| {
         let checked = producer.waist(extra).and_then(|waist| {
             waist.waist.check()?;
             waist.check("the producer", points)?;
@@ -74,7 +77,8 @@ pub fn producer<S: Scalar>(
         checked.map_err(|e| broken(&ANSWER, extra, e.to_string()))
     };
     let first = make(&[])?;
-    let extra: Vec<usize> = (0..points)
+    let extra: Vec<Row> = (0..points)
+        .map(Row::new)
         .filter(|&row| producer.may_add(row) && !first.rows.contains(&row))
         .step_by((points / 4).max(1))
         .collect();
@@ -167,7 +171,8 @@ mod tests {
     use crate::certificate::LinkKind;
     use crate::stratify::Stratification;
     use crosscap_core::{
-        CellNeighborhood, Complex, Error, PointCloud, SparseDistances, StratifiedLandmarks,
+        CellNeighborhood, Complex, Error, Landmark, PointCloud, SparseDistances,
+        StratifiedLandmarks, Table,
     };
     use std::sync::Mutex;
 
@@ -202,36 +207,39 @@ mod tests {
     }
 
     /// A waist of four rows of ten in one neighborhood, with what is wrong.
-    struct Four(&'static str, Mutex<Vec<usize>>);
+    struct Four(&'static str, Mutex<Vec<Row>>);
 
     impl WaistProducer<f64> for Four {
-        fn waist(&self, extra: &[usize]) -> Result<Stratification<f64>, Error> {
-            let mut rows = vec![2, 5, 6, 9];
+        fn waist(&self, extra: &[Row]) -> Result<Stratification<f64>, Error> {
+            let mut rows = [2, 5, 6, 9].map(Row::new).to_vec();
             let mut kept = self.1.lock().unwrap();
             kept.extend(extra);
             match self.0 {
-                "answer" => rows[1] = 2,
+                "answer" => rows[1] = rows[0],
                 "extra" => {}
                 "independence" => rows.extend(kept.iter()),
                 _ => rows.extend(extra),
             }
-            let members: Vec<u32> = (0..rows.len() as u32).collect();
-            let near = CellNeighborhood { center: 0, members };
+            let members: Vec<Landmark> = (0..rows.len()).map(Landmark::new).collect();
+            let near = CellNeighborhood {
+                center: members[0],
+                members,
+            };
             let waist = StratifiedLandmarks {
-                strata: vec![2; rows.len()],
+                strata: Table::filled(rows.len(), 2),
                 curve_edges: vec![],
                 distances: SparseDistances::within(
                     rows.len(),
                     std::slice::from_ref(&near),
-                    |a, b| f64::from(a + b),
+                    |a, b| (a.index() + b.index()) as f64,
                 )?,
                 neighborhoods: vec![near],
             };
-            Ok(Stratification::new(waist, rows))
+            Ok(Stratification::new(waist, rows.into()))
         }
 
-        fn may_add(&self, row: usize) -> bool {
-            row < 10
+        fn may_add(&self, row: Row) -> bool {
+            row.index() < 10
         }
     }
 

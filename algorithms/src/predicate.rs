@@ -31,10 +31,10 @@ use robust::{Coord, orient2d};
 ///
 /// ```
 /// use crosscap_algorithms::predicate::PlanarPredicate;
-/// use crosscap_core::{ChartTriangle, CompatibilityTest, Meeting};
-/// let below = ChartTriangle { corners: [0, 1, 2], places: [[0.0, 0.0], [2.0, 0.0], [1.0, -1.0]] };
-/// let above = ChartTriangle { corners: [1, 0, 3], places: [[2.0, 0.0], [0.0, 0.0], [1.0, 1.0]] };
-/// let on_the_side = ChartTriangle { corners: [4, 5, 3], places: [[1.0, 0.0], [3.0, 2.0], [1.0, 1.0]] };
+/// use crosscap_core::{ChartTriangle, CompatibilityTest, Landmark, Meeting};
+/// let below = ChartTriangle { corners: [0, 1, 2].map(Landmark::new), places: [[0.0, 0.0], [2.0, 0.0], [1.0, -1.0]] };
+/// let above = ChartTriangle { corners: [1, 0, 3].map(Landmark::new), places: [[2.0, 0.0], [0.0, 0.0], [1.0, 1.0]] };
+/// let on_the_side = ChartTriangle { corners: [4, 5, 3].map(Landmark::new), places: [[1.0, 0.0], [3.0, 2.0], [1.0, 1.0]] };
 /// assert_eq!(PlanarPredicate.meeting(&below, &above), Meeting::CommonFace);
 /// assert_eq!(PlanarPredicate.meeting(&below, &on_the_side), Meeting::Overlap);
 /// ```
@@ -172,10 +172,14 @@ fn apart_at_corner(a: &ChartTriangle, b: &ChartTriangle, partner: &[Option<usize
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crosscap_core::Landmark;
     use proptest::prelude::*;
 
     fn triangle(corners: [u32; 3], places: [[f64; 2]; 3]) -> ChartTriangle {
-        ChartTriangle { corners, places }
+        ChartTriangle {
+            corners: corners.map(Landmark::from),
+            places,
+        }
     }
 
     fn both_ways(a: &ChartTriangle, b: &ChartTriangle) -> Meeting {

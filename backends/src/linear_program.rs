@@ -1,6 +1,6 @@
 //! The paper's linear program (6), on microlp.
 
-use crosscap_core::{ChartTriangle, CompatibilityTest, Meeting};
+use crosscap_core::{ChartTriangle, CompatibilityTest, Landmark, Meeting};
 use microlp::{ComparisonOp, Error, LinearExpr, OptimizationDirection, Problem};
 
 /// A maximum above this is an overlap.
@@ -29,9 +29,9 @@ const POSITIVE: f64 = 1e-6;
 ///
 /// ```
 /// use crosscap_backends::linear_program::LinearProgramTest;
-/// use crosscap_core::{ChartTriangle, CompatibilityTest, Meeting};
-/// let below = ChartTriangle { corners: [0, 1, 2], places: [[0.0, 0.0], [2.0, 0.0], [1.0, -1.0]] };
-/// let above = ChartTriangle { corners: [1, 0, 3], places: [[2.0, 0.0], [0.0, 0.0], [1.0, 1.0]] };
+/// use crosscap_core::{ChartTriangle, CompatibilityTest, Landmark, Meeting};
+/// let below = ChartTriangle { corners: [0, 1, 2].map(Landmark::new), places: [[0.0, 0.0], [2.0, 0.0], [1.0, -1.0]] };
+/// let above = ChartTriangle { corners: [1, 0, 3].map(Landmark::new), places: [[2.0, 0.0], [0.0, 0.0], [1.0, 1.0]] };
 /// assert_eq!(LinearProgramTest.meeting(&below, &above), Meeting::CommonFace);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,7 +45,7 @@ impl CompatibilityTest for LinearProgramTest {
         let Some([u, v]) = normalized(a, b) else {
             return Meeting::Overlap;
         };
-        let own = |t: &ChartTriangle, c: u32| if t.corners.contains(&c) { 0.0 } else { 1.0 };
+        let own = |t: &ChartTriangle, c: Landmark| if t.corners.contains(&c) { 0.0 } else { 1.0 };
         let mut problem = Problem::new(OptimizationDirection::Maximize);
         let alpha = a.corners.map(|c| problem.add_var(own(b, c), (0.0, 1.0)));
         let beta = b.corners.map(|c| problem.add_var(own(a, c), (0.0, 1.0)));
@@ -117,7 +117,7 @@ mod tests {
 
     fn triangle(landmarks: [u32; 3], places: [Corner; 3]) -> ChartTriangle {
         ChartTriangle {
-            corners: landmarks,
+            corners: landmarks.map(Landmark::from),
             places: places.map(|p| p.map(|x| x as f64)),
         }
     }

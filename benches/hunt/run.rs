@@ -175,11 +175,18 @@ impl Run {
     pub fn is_wrong(&self) -> bool {
         self.end == End::Wrong
     }
+
+    /// Right, but for an end that is further off than any other place may be.
+    pub fn is_off_at_end(&self) -> bool {
+        let off = self.distance.as_ref().is_some_and(|d| !d.is_near_at_ends());
+        self.end == End::Right && off
+    }
 }
 
 impl fmt::Display for Run {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let end = match self.end {
+            End::Right if self.is_off_at_end() => "right (off at an end)",
             End::Right => "right",
             End::Wrong => "WRONG",
             End::Refused => "refused",

@@ -41,6 +41,8 @@ pub struct Tally {
     rules: BTreeMap<Rule, [Counts; CLASSES.len()]>,
     /// Runs with a feature that is large for points and dl.
     resolvable: BTreeMap<Rule, Counts>,
+    /// Right runs that are wrong by the narrow limit at ends.
+    off_at_end: [usize; CLASSES.len()],
 }
 
 impl Tally {
@@ -52,6 +54,7 @@ impl Tally {
         };
         count(&mut self.families.entry(run.feature.name).or_default()[class]);
         count(&mut self.rules.entry(run.rule).or_default()[class]);
+        self.off_at_end[class] += usize::from(run.is_off_at_end());
         if class == CLASSES.len() - 1 && (run.rule == Rule::Auto || run.coarse <= COARSE) {
             count(self.resolvable.entry(run.rule).or_default());
         }
@@ -94,6 +97,10 @@ impl fmt::Display for Tally {
                 "\nrule {rule}: {right} of {sum} features of 8 spacings and more, none below 2.5 dl, are reconstructed"
             )?;
         }
-        Ok(())
+        let off = self.off_at_end.map(|n| n.to_string()).join(", ");
+        writeln!(
+            f,
+            "\nwrong as well when a mesh may be no further off where it ends than elsewhere: {off}"
+        )
     }
 }

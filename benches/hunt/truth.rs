@@ -26,11 +26,22 @@ pub struct Distance {
     back: f64,
     /// The most that is allowed each way, in dl: the places of the surface are some way apart.
     allowed: [f64; 2],
+    /// What is allowed beyond that where a surface ends, in dl.
+    rim: f64,
 }
 
 impl Distance {
     pub fn is_near(&self) -> bool {
-        self.out <= self.allowed[0] && self.back <= self.allowed[1]
+        self.is_within(self.rim)
+    }
+
+    /// The same without what chance leaves empty where a surface ends.
+    pub fn is_near_at_ends(&self) -> bool {
+        self.is_within(0.0)
+    }
+
+    fn is_within(&self, beyond: f64) -> bool {
+        self.out <= self.allowed[0] + beyond && self.back <= self.allowed[1] + beyond
     }
 }
 
@@ -39,8 +50,8 @@ impl fmt::Display for Distance {
         let [out, back] = self.allowed;
         write!(
             f,
-            "off {:.2} (of {out:.2}) and {:.2} dl (of {back:.2})",
-            self.out, self.back
+            "off {:.2} (of {out:.2}) and {:.2} dl (of {back:.2}; {:.2} more at ends)",
+            self.out, self.back, self.rim
         )
     }
 }
@@ -79,7 +90,8 @@ pub fn distance(
     Ok(Distance {
         out: out.sqrt() / dl,
         back: back.sqrt() / dl,
-        allowed: [usual.hypot(apart / dl) + rim, usual + rim],
+        allowed: [usual.hypot(apart / dl), usual],
+        rim,
     })
 }
 

@@ -1,5 +1,7 @@
 //! Whether two triangles of a chart may stand side by side.
 
+use crate::Landmark;
+
 /// How two triangles of the plane meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meeting {
@@ -17,7 +19,7 @@ pub enum Meeting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartTriangle {
     /// The landmarks at the corners.
-    pub corners: [u32; 3],
+    pub corners: [Landmark; 3],
     /// Their places in the chart.
     pub places: [[f64; 2]; 3],
 }

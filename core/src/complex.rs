@@ -1,6 +1,6 @@
 //! Simplicial complexes of dimension 2 with marked curves, and meshes: complexes with places.
 
-use crate::{Error, PointCloud};
+use crate::{Error, Landmark, PointCloud};
 use serde::{Deserialize, Serialize};
 
 /// An edge along a curve: a boundary, a double curve, a curve of another kind.
@@ -21,6 +21,11 @@ impl CurveEdge {
             ends: [a.min(b), a.max(b)],
             cells,
         }
+    }
+
+    /// Its ends, where it is an edge of a waist: the vertices of a complex on landmarks are those landmarks.
+    pub fn landmarks(&self) -> [Landmark; 2] {
+        self.ends.map(Landmark::from)
     }
 }
 

@@ -1,51 +1,43 @@
-//! Distances of some pairs of landmarks.
+//! Distances of some pairs of landmarks, or of points.
 
-use crate::{CellNeighborhood, Error, Scalar};
+use crate::{CellNeighborhood, Error, Id, Landmark, Scalar, Table};
 use serde::{Deserialize, Serialize};
 
-/// Symmetric sparse distances in compressed rows.
+/// Symmetric sparse distances in compressed rows: of landmarks, as a waist has them, or of whatever else has ids.
 ///
 /// What is read from a file is checked as [`SparseDistances::new`] would: rows that are not sorted,
 /// not symmetric or not within each other are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(
-    try_from = "Rows<S>",
-    bound(deserialize = "S: Scalar + Deserialize<'de>")
+    try_from = "Rows<S, I>",
+    bound(deserialize = "S: Scalar + Deserialize<'de>, I: Id + Deserialize<'de>")
 )]
-pub struct SparseDistances<S> {
+pub struct SparseDistances<S, I = Landmark> {
     starts: Vec<usize>,
-    columns: Vec<u32>,
+    columns: Vec<I>,
     values: Vec<S>,
 }
 
-impl<S: Scalar> SparseDistances<S> {
-    /// Builds the matrix of `count` landmarks from entries `(a, b, distance)`; each pair
+impl<S: Scalar, I: Id> SparseDistances<S, I> {
+    /// Builds the matrix of `count` ids from entries `(a, b, distance)`; each pair
     /// may be given once or several times, in either order; the first one counts.
     ///
     /// # Errors
     /// [`Error::Index`] for an index not below `count`, [`Error::NotFinite`] for a
     /// distance that is NaN, infinite or negative.
-    pub fn new(
-        count: usize,
-        entries: impl IntoIterator<Item = (u32, u32, S)>,
-    ) -> Result<Self, Error> {
-        let mut all: Vec<(u32, u32, S)> = Vec::new();
+    pub fn new(count: usize, entries: impl IntoIterator<Item = (I, I, S)>) -> Result<Self, Error> {
+        let mut all: Vec<(I, I, S)> = Vec::new();
         for (a, b, d) in entries {
             for i in [a, b] {
-                if i as usize >= count {
+                if i.index() >= count {
                     return Err(Error::Index {
                         what: "landmark",
-                        index: i as usize,
+                        index: i.index(),
                         limit: count,
                     });
                 }
             }
-            if !d.is_finite() || d < S::zero() {
-                return Err(Error::NotFinite {
-                    row: a as usize,
-                    column: b as usize,
-                });
-            }
+            sound(d, a, b)?;
             if a != b {
                 all.push((a, b, d));
                 all.push((b, a, d));
@@ -55,7 +47,7 @@ impl<S: Scalar> SparseDistances<S> {
         all.dedup_by_key(|&mut (a, b, _)| (a, b));
         let mut starts = vec![0usize; count + 1];
         for &(a, _, _) in &all {
-            starts[a as usize + 1] += 1;
+            starts[a.index() + 1] += 1;
         }
         for i in 0..count {
             starts[i + 1] += starts[i];
@@ -67,112 +59,29 @@ impl<S: Scalar> SparseDistances<S> {
         })
     }
 
-    /// The matrix of `count` landmarks that keeps the distances of all members of each
-    /// neighborhood, `distance(a, b)` asked for once for every pair, `a < b`.
-    ///
-    /// O(sum of k^2 over neighborhoods of k members), in memory for the result alone.
-    ///
-    /// # Errors
-    /// Those of [`SparseDistances::new`].
-    pub fn within(
-        count: usize,
-        neighborhoods: &[CellNeighborhood],
-        mut distance: impl FnMut(u32, u32) -> S,
-    ) -> Result<Self, Error> {
-        let mut holders = vec![0usize; count + 1];
-        for &m in neighborhoods.iter().flat_map(|x| &x.members) {
-            if m as usize >= count {
-                return Err(Error::Index {
-                    what: "landmark",
-                    index: m as usize,
-                    limit: count,
-                });
-            }
-            holders[m as usize + 1] += 1;
-        }
-        for k in 0..count {
-            holders[k + 1] += holders[k];
-        }
-        let mut next = holders.clone();
-        let mut holding = vec![0u32; holders[count]];
-        for (k, near) in neighborhoods.iter().enumerate() {
-            for &m in &near.members {
-                holding[next[m as usize]] = k as u32;
-                next[m as usize] += 1;
-            }
-        }
-        let mut matrix = Self {
-            starts: Vec::with_capacity(count + 1),
-            columns: Vec::new(),
-            values: Vec::new(),
-        };
-        matrix.starts.push(0);
-        let mut seen = vec![u32::MAX; count];
-        let mut row: Vec<u32> = Vec::new();
-        // Pairs are symmetric: row b has the rows behind it in the order in which they ask for theirs.
-        let mut asked: Vec<usize> = vec![0; count];
-        for a in 0..count as u32 {
-            let holding = &holding[holders[a as usize]..holders[a as usize + 1]];
-            let members = |k: &u32| &neighborhoods[*k as usize].members;
-            let most = holding.iter().map(|k| members(k).len()).sum();
-            row.resize(row.len().max(most), 0);
-            let mut length = 0;
-            seen[a as usize] = a;
-            for &b in holding.iter().flat_map(members) {
-                // Written in any case and kept if new: a branch would be guessed wrong half of the time.
-                row[length] = b;
-                length += usize::from(seen[b as usize] != a);
-                seen[b as usize] = a;
-            }
-            let from = matrix.columns.len();
-            matrix.columns.extend_from_slice(&row[..length]);
-            matrix.columns[from..].sort_unstable();
-            asked[a as usize] = from + matrix.columns[from..].partition_point(|&b| b < a);
-            for at in from..matrix.columns.len() {
-                let b = matrix.columns[at];
-                let d = if b > a {
-                    distance(a, b)
-                } else {
-                    let there = &mut asked[b as usize];
-                    *there += 1;
-                    matrix.values[*there - 1]
-                };
-                if !d.is_finite() || d < S::zero() {
-                    return Err(Error::NotFinite {
-                        row: a as usize,
-                        column: b as usize,
-                    });
-                }
-                matrix.values.push(d);
-            }
-            matrix.starts.push(matrix.columns.len());
-        }
-        Ok(matrix)
-    }
-
-    /// Number of landmarks.
+    /// Number of ids.
     pub fn len(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
 
-    /// Whether there is no landmark.
+    /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The distance of two landmarks, where it is kept. O(log k), k the entries of a row.
-    pub fn get(&self, a: u32, b: u32) -> Option<S> {
+    /// The distance of two of them, where it is kept. O(log k), k the entries of a row.
+    pub fn get(&self, a: I, b: I) -> Option<S> {
         if a == b {
             return Some(S::zero());
         }
-        let range = self.starts[a as usize]..self.starts[a as usize + 1];
+        let range = self.starts[a.index()]..self.starts[a.index() + 1];
         let at = self.columns[range.clone()].binary_search(&b).ok()?;
         Some(self.values[range.start + at])
     }
 
-    /// The landmarks to which the distance from `a` is kept, increasing, with the distances.
-    pub fn row(&self, a: u32) -> impl Iterator<Item = (u32, S)> + '_ {
-        let range = self.starts[a as usize]..self.starts[a as usize + 1];
+    /// Those to which the distance from `a` is kept, increasing, with the distances.
+    pub fn row(&self, a: I) -> impl Iterator<Item = (I, S)> + '_ {
+        let range = self.starts[a.index()]..self.starts[a.index() + 1];
         self.columns[range.clone()]
             .iter()
             .copied()
@@ -185,90 +94,200 @@ impl<S: Scalar> SparseDistances<S> {
     }
 }
 
+impl<S: Scalar> SparseDistances<S> {
+    /// The matrix of `count` landmarks that keeps the distances of all members of each
+    /// neighborhood, `distance(a, b)` asked for once for every pair, `a < b`.
+    ///
+    /// O(sum of k^2 over neighborhoods of k members), in memory for the result alone.
+    ///
+    /// # Errors
+    /// Those of [`SparseDistances::new`].
+    pub fn within(
+        count: usize,
+        neighborhoods: &[CellNeighborhood],
+        mut distance: impl FnMut(Landmark, Landmark) -> S,
+    ) -> Result<Self, Error> {
+        let holders = Holders::of(count, neighborhoods)?;
+        let mut matrix = Self {
+            starts: Vec::with_capacity(count + 1),
+            columns: Vec::new(),
+            values: Vec::new(),
+        };
+        matrix.starts.push(0);
+        // The row that a landmark was seen in last, counted from 1.
+        let mut seen: Table<Landmark, usize> = Table::filled(count, 0);
+        let mut row: Vec<Landmark> = Vec::new();
+        // Pairs are symmetric: row b has the rows behind it in the order in which they ask for theirs.
+        let mut asked: Table<Landmark, usize> = Table::filled(count, 0);
+        for a in seen.ids() {
+            let members = |k: &u32| &neighborhoods[*k as usize].members;
+            let holding = holders.at(a);
+            let most = holding.iter().map(|k| members(k).len()).sum();
+            row.resize(row.len().max(most), a);
+            let (mut length, round) = (0, a.index() + 1);
+            seen[a] = round;
+            for &b in holding.iter().flat_map(members) {
+                // Written in any case and kept if new: a branch would be guessed wrong half of the time.
+                row[length] = b;
+                length += usize::from(seen[b] != round);
+                seen[b] = round;
+            }
+            let from = matrix.columns.len();
+            matrix.columns.extend_from_slice(&row[..length]);
+            matrix.columns[from..].sort_unstable();
+            asked[a] = from + matrix.columns[from..].partition_point(|&b| b < a);
+            for at in from..matrix.columns.len() {
+                let b = matrix.columns[at];
+                let d = if b > a {
+                    distance(a, b)
+                } else {
+                    let there = &mut asked[b];
+                    *there += 1;
+                    matrix.values[*there - 1]
+                };
+                sound(d, a, b)?;
+                matrix.values.push(d);
+            }
+            matrix.starts.push(matrix.columns.len());
+        }
+        Ok(matrix)
+    }
+}
+
+/// # Errors
+/// [`Error::NotFinite`] for a distance that is none.
+fn sound<S: Scalar, I: Id>(d: S, a: I, b: I) -> Result<(), Error> {
+    if d.is_finite() && d >= S::zero() {
+        return Ok(());
+    }
+    Err(Error::NotFinite {
+        row: a.index(),
+        column: b.index(),
+    })
+}
+
+/// The neighborhoods that every landmark is in.
+struct Holders {
+    starts: Vec<usize>,
+    holding: Vec<u32>,
+}
+
+impl Holders {
+    fn of(count: usize, neighborhoods: &[CellNeighborhood]) -> Result<Self, Error> {
+        let mut starts = vec![0usize; count + 1];
+        for &m in neighborhoods.iter().flat_map(|x| &x.members) {
+            if m.index() >= count {
+                return Err(Error::Index {
+                    what: "landmark",
+                    index: m.index(),
+                    limit: count,
+                });
+            }
+            starts[m.index() + 1] += 1;
+        }
+        for k in 0..count {
+            starts[k + 1] += starts[k];
+        }
+        let mut next = starts.clone();
+        let mut holding = vec![0u32; starts[count]];
+        for (k, near) in (0..).zip(neighborhoods) {
+            for &m in &near.members {
+                holding[next[m.index()]] = k;
+                next[m.index()] += 1;
+            }
+        }
+        Ok(Self { starts, holding })
+    }
+
+    fn at(&self, landmark: Landmark) -> &[u32] {
+        let k = landmark.index();
+        &self.holding[self.starts[k]..self.starts[k + 1]]
+    }
+}
+
 /// The matrix as it is in a file, before anything is known about it.
 #[derive(Deserialize)]
-struct Rows<S> {
+struct Rows<S, I> {
     starts: Vec<usize>,
-    columns: Vec<u32>,
+    columns: Vec<I>,
     values: Vec<S>,
 }
 
-impl<S: Scalar> TryFrom<Rows<S>> for SparseDistances<S> {
+impl<S: Scalar, I: Id> TryFrom<Rows<S, I>> for SparseDistances<S, I> {
     type Error = Error;
 
     /// O(e log k) for e entries, k of them in a row.
-    fn try_from(rows: Rows<S>) -> Result<Self, Error> {
+    fn try_from(rows: Rows<S, I>) -> Result<Self, Error> {
         let Rows {
             starts,
             columns,
             values,
         } = rows;
-        let wrong = |found: String, expected: &str| {
-            Err(Error::Shape {
-                found,
-                expected: expected.into(),
-            })
-        };
         let whole = starts.first() == Some(&0)
             && starts.is_sorted()
             && starts.last() == Some(&columns.len())
             && columns.len() == values.len();
         if !whole {
-            return wrong(
-                format!(
+            return Err(Error::Shape {
+                found: format!(
                     "rows from {:?} to {:?} of {} columns and {} distances",
                     starts.first(),
                     starts.last(),
                     columns.len(),
                     values.len()
                 ),
-                "rows one after the other from 0 to the number of columns, a distance for each",
-            );
+                expected:
+                    "rows one after the other from 0 to the number of columns, a distance for each"
+                        .into(),
+            });
         }
         let matrix = Self {
             starts,
             columns,
             values,
         };
-        let count = matrix.len();
-        for a in 0..count {
-            let range = matrix.starts[a]..matrix.starts[a + 1];
-            let columns = &matrix.columns[range.clone()];
-            if !columns.is_sorted_by(|x, y| x < y) {
-                return wrong(
-                    format!("row {a} with the columns {columns:?}"),
-                    "increasing ones",
-                );
+        (0..matrix.len()).try_for_each(|a| matrix.check_row(I::new(a)))?;
+        Ok(matrix)
+    }
+}
+
+impl<S: Scalar, I: Id> SparseDistances<S, I> {
+    /// Whether a row that was read has increasing columns in range, and distances that are the same back.
+    fn check_row(&self, a: I) -> Result<(), Error> {
+        let wrong = |found: String, expected: &str| {
+            Err(Error::Shape {
+                found,
+                expected: expected.into(),
+            })
+        };
+        let (count, row) = (self.len(), a.index());
+        let range = self.starts[row]..self.starts[row + 1];
+        let columns = &self.columns[range.clone()];
+        if !columns.is_sorted_by(|x, y| x < y) {
+            let columns: Vec<usize> = columns.iter().map(|b| b.index()).collect();
+            let found = format!("row {row} with the columns {columns:?}");
+            return wrong(found, "increasing ones");
+        }
+        if let Some(&b) = columns.last().filter(|b| b.index() >= count) {
+            return Err(Error::Index {
+                what: "landmark",
+                index: b.index(),
+                limit: count,
+            });
+        }
+        for (&b, &d) in columns.iter().zip(&self.values[range]) {
+            sound(d, a, b)?;
+            if b == a {
+                let found = format!("a distance of landmark {row} from itself");
+                return wrong(found, "distances of two landmarks");
             }
-            if let Some(&b) = columns.last().filter(|&&b| b as usize >= count) {
-                return Err(Error::Index {
-                    what: "landmark",
-                    index: b as usize,
-                    limit: count,
-                });
-            }
-            for (&b, &d) in columns.iter().zip(&matrix.values[range]) {
-                if !d.is_finite() || d < S::zero() {
-                    return Err(Error::NotFinite {
-                        row: a,
-                        column: b as usize,
-                    });
-                }
-                if b as usize == a {
-                    return wrong(
-                        format!("a distance of landmark {a} from itself"),
-                        "distances of two landmarks",
-                    );
-                }
-                if matrix.get(b, a as u32) != Some(d) {
-                    return wrong(
-                        format!("the distance {} from {a} to {b}, not back", d.as_f64()),
-                        "the same in both directions",
-                    );
-                }
+            if self.get(b, a) != Some(d) {
+                let (d, b) = (d.as_f64(), b.index());
+                let found = format!("the distance {d} from {row} to {b}, not back");
+                return wrong(found, "the same in both directions");
             }
         }
-        Ok(matrix)
+        Ok(())
     }
 }
 
@@ -278,7 +297,9 @@ mod tests {
     use serde_json::{Value, from_value, json, to_value};
 
     fn line() -> SparseDistances<f64> {
-        SparseDistances::new(4, [(0, 1, 1.0), (1, 2, 0.1 + 0.2), (0, 2, 1.5)]).unwrap()
+        let pairs = [(0, 1, 1.0), (1, 2, 0.1 + 0.2), (0, 2, 1.5)];
+        let named = pairs.map(|(a, b, d)| (Landmark::new(a), Landmark::new(b), d));
+        SparseDistances::new(4, named).unwrap()
     }
 
     #[test]

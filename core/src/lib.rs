@@ -19,8 +19,10 @@
 //! | triangles on landmarks | [`Triangulator`] |
 //! | the result | [`Complex`], [`Mesh`] |
 //! | many jobs at once | [`execute`] |
+//! | numbers that name things | [`Row`], [`Landmark`], [`Label`], [`Table`] |
 
 mod balls;
+mod cell;
 mod chart;
 mod cloud;
 mod compatibility;
@@ -28,11 +30,14 @@ mod complex;
 mod dimension;
 mod distances;
 mod error;
+mod estimate;
 pub mod execute;
+mod ids;
 mod landmarks;
 #[cfg(any(test, feature = "laws"))]
 pub mod laws;
 mod link;
+mod local;
 mod metric;
 mod neighborhood;
 mod scalar;
@@ -42,19 +47,23 @@ mod triangulation;
 mod waist;
 
 pub use balls::{BallDimension, Balls, Radii};
+pub use cell::CellNeighborhood;
 pub use chart::{Chart, LocalChart};
 pub use cloud::{PointCloud, squared_distance};
 pub use compatibility::{ChartTriangle, CompatibilityTest, Meeting, TriangleRule};
 pub use complex::{Complex, CurveEdge, Mesh};
-pub use dimension::{DimensionEstimate, DimensionEstimator};
+pub use dimension::DimensionEstimator;
 pub use distances::SparseDistances;
 pub use error::Error;
+pub use estimate::DimensionEstimate;
+pub use ids::{Id, Label, Landmark, Row, Table};
 pub use landmarks::LandmarkSelector;
 pub use link::{Link, LinkKind};
+pub use local::LocalPoints;
 pub use metric::MetricSpace;
 pub use neighborhood::{Neighbor, Neighborhood, NeighborhoodOracle};
 pub use scalar::Scalar;
-pub use singularity::{LocalPoints, Rejection, SingularityModel};
+pub use singularity::{Rejection, SingularityModel};
 pub use strata::{Contradiction, Decomposition, Located, Stratum};
 pub use triangulation::{Incomplete, Triangulation, TriangulationCounts, Triangulator};
-pub use waist::{CellNeighborhood, StratifiedLandmarks};
+pub use waist::StratifiedLandmarks;

@@ -1,6 +1,6 @@
 //! Who is near whom.
 
-use crate::{MetricSpace, PointCloud, Scalar};
+use crate::{MetricSpace, PointCloud, Row, Scalar};
 
 /// A point and its distance from the center of a neighborhood.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +9,14 @@ pub struct Neighbor<S> {
     pub index: usize,
     /// Its distance from the center, in the unit of the data.
     pub distance: S,
+}
+
+impl<S> Neighbor<S> {
+    /// The point as a row of the cloud.
+    #[inline]
+    pub fn row(&self) -> Row {
+        Row::new(self.index)
+    }
 }
 
 /// Answers neighborhood queries in a finite metric space, exactly.

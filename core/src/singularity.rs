@@ -1,42 +1,6 @@
 //! Models of how a surface can be singular.
 
-use crate::{Decomposition, Link, Located};
-
-/// A neighborhood in its own principal coordinates, as a singularity model sees it.
-///
-/// The origin is the mean of the neighborhood, axes are principal directions in order of
-/// falling variance.
-#[derive(Clone, Copy, Debug)]
-pub struct LocalPoints<'a> {
-    /// Number of coordinates a point has, [`SingularityModel::local_dimension`] of them.
-    pub dimension: usize,
-    /// `count * dimension` coordinates in row order, in the unit of the data.
-    pub coordinates: &'a [f64],
-    /// How many leading rows the model is fitted to: the neighborhood. Rows behind them lie
-    /// a little farther out and are only labelled.
-    pub fitted: usize,
-    /// Which row is the center of the neighborhood; it may be one behind those that are fitted.
-    pub center: usize,
-    /// Radius of the neighborhood.
-    pub radius: f64,
-}
-
-impl LocalPoints<'_> {
-    /// Number of points, those that are only labelled included.
-    pub fn len(&self) -> usize {
-        self.coordinates.len() / self.dimension
-    }
-
-    /// Whether there is no point.
-    pub fn is_empty(&self) -> bool {
-        self.coordinates.is_empty()
-    }
-
-    /// Coordinates of point `k`.
-    pub fn point(&self, k: usize) -> &[f64] {
-        &self.coordinates[k * self.dimension..(k + 1) * self.dimension]
-    }
-}
+use crate::{Decomposition, Link, LocalPoints, Located};
 
 /// Why a model does not apply to a neighborhood.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,6 +102,12 @@ pub trait SingularityModel: Sync {
         None
     }
 
+    /// The link of the 0-strata of one of its own decompositions: for a model that knows several kinds of points, and can
+    /// tell from the strata which of them it found.
+    fn link_of(&self, _fit: &Decomposition) -> Option<Link> {
+        self.link()
+    }
+
     /// Fits the model.
     ///
     /// # Errors
@@ -169,7 +139,7 @@ pub trait SingularityModel: Sync {
                 };
                 let fit = self.decompose(&own).ok()?;
                 // Not every model keeps its labels in range.
-                let label = usize::from(*fit.labels.get(row)?);
+                let label = fit.labels.get(row)?.index();
                 (label < fit.strata.len()).then(|| fit.located(row))
             })
             .collect();

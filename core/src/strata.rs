@@ -1,6 +1,6 @@
 //! Decomposition of a neighborhood into points, curves and cells.
 
-use crate::LocalPoints;
+use crate::{Label, LocalPoints};
 use serde::{Deserialize, Serialize};
 
 /// One stratum of a decomposed neighborhood.
@@ -21,7 +21,7 @@ pub struct Decomposition {
     /// The strata, those of lowest dimension first.
     pub strata: Vec<Stratum>,
     /// For each point of the neighborhood, the stratum it is in.
-    pub labels: Vec<u8>,
+    pub labels: Vec<Label>,
     /// For each curve (in the order of `strata`) the number of cells that meet in it: the
     /// number of triangles that an edge along it must have.
     pub cells_at_curve: Vec<u8>,
@@ -41,16 +41,32 @@ pub struct Decomposition {
 }
 
 impl Decomposition {
+    /// The stratum that a label names.
+    fn stratum(&self, label: Label) -> Stratum {
+        self.strata[label.index()]
+    }
+
+    /// Whether a label names a stratum of this dimension.
+    pub fn is_of(&self, label: Label, dimension: u8) -> bool {
+        self.stratum(label).dimension == dimension
+    }
+
+    /// The labels that name a stratum of this dimension.
+    pub fn labels_of(&self, dimension: u8) -> impl Iterator<Item = Label> {
+        let all = (0..self.strata.len()).map(Label::new);
+        all.filter(move |&label| self.is_of(label, dimension))
+    }
+
     /// Dimension of the stratum that point `k` of the neighborhood lies in.
     pub fn dimension_of(&self, k: usize) -> u8 {
-        self.strata[self.labels[k] as usize].dimension
+        self.stratum(self.labels[k]).dimension
     }
 
     /// Number of cells that meet in the curve that `label` names; `None` when it names no curve.
-    pub fn cells_at(&self, label: u8) -> Option<u8> {
+    pub fn cells_at(&self, label: Label) -> Option<u8> {
         let first = self.strata.iter().filter(|s| s.dimension == 0).count();
-        (self.strata.get(label as usize)?.dimension == 1)
-            .then(|| self.cells_at_curve.get(label as usize - first).copied())
+        (self.strata.get(label.index())?.dimension == 1)
+            .then(|| self.cells_at_curve.get(label.index() - first).copied())
             .flatten()
     }
 
@@ -126,7 +142,7 @@ impl Decomposition {
         };
         center.check(own, local.radius)?;
         if center.dimension == 0 {
-            let point = &self.points[usize::from(self.labels[local.center])];
+            let point = &self.points[self.labels[local.center].index()];
             require(
                 distance(point, &self.center) <= ROUNDING * local.radius,
                 "a center on a stratum of dimension 0 is moved to its point",
@@ -143,9 +159,10 @@ impl Decomposition {
             format!("{labels} labels for {points} points")
         })?;
         let strata = self.strata.len();
-        let wild = self.labels.iter().find(|&&l| usize::from(l) >= strata);
+        let wild = self.labels.iter().find(|l| l.index() >= strata);
         require(wild.is_none(), law, || {
-            format!("the label {} of {strata} strata", wild.unwrap_or(&0))
+            let wild = wild.copied().unwrap_or_default();
+            format!("the label {wild} of {strata} strata")
         })?;
         let dimensions: Vec<u8> = self.strata.iter().map(|s| s.dimension).collect();
         require(
@@ -263,7 +280,7 @@ mod tests {
     fn crease() -> Decomposition {
         Decomposition {
             strata: [1, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
-            labels: vec![0, 1, 2, 1],
+            labels: [0, 1, 2, 1].map(Label::new).to_vec(),
             cells_at_curve: vec![2],
             center: vec![0.1, 0.0, 0.0],
             center_offset: 0.1,
@@ -300,7 +317,7 @@ mod tests {
         // In a cell, a curve may be far away, or unknown.
         let inside = |center: [f64; 3], offset: f64| {
             found(|fit| {
-                fit.labels[0] = 1;
+                fit.labels[0] = Label::new(1);
                 (fit.center, fit.center_offset) = (center.to_vec(), offset);
             })
         };
@@ -318,7 +335,7 @@ mod tests {
                 fit.points = vec![place.to_vec()];
                 fit.center = center.to_vec();
                 fit.center_offset = distance(&center, &[0.0; 3]);
-                fit.labels = vec![0, 2, 3, 2];
+                fit.labels = [0, 2, 3, 2].map(Label::new).to_vec();
             })
         };
         assert_eq!(apex([0.1, 0.0, 0.0], [0.1, 0.0, 0.0], 4), Ok(()));

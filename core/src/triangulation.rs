@@ -1,13 +1,13 @@
 //! From the waist to the complex.
 
-use crate::{Complex, Error, Scalar, StratifiedLandmarks};
+use crate::{Complex, Error, Landmark, Scalar, StratifiedLandmarks};
 use serde::{Deserialize, Serialize};
 
 /// A star that stayed open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Incomplete {
     /// The landmark.
-    pub landmark: u32,
+    pub landmark: Landmark,
 }
 
 /// What a triangulation counted.
@@ -24,10 +24,10 @@ pub struct TriangulationCounts {
 /// What a triangulator makes of a waist.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Triangulation {
-    /// The complex on the landmarks; a dropped landmark is an isolated vertex.
+    /// The complex on the landmarks: vertex k is landmark k, and one that was dropped is an isolated vertex.
     pub complex: Complex,
     /// Landmarks given up, in increasing order.
-    pub dropped: Vec<u32>,
+    pub dropped: Vec<Landmark>,
     /// Stars that stayed open, in increasing order of their landmarks.
     pub incomplete: Vec<Incomplete>,
     /// Counts for the report; zeros where nothing was counted.
@@ -77,11 +77,11 @@ impl Triangulation {
         waist: &StratifiedLandmarks<S>,
         plugin: &str,
     ) -> Result<(), Error> {
-        let broken = |law: &'static str, landmark: u32, detail: String| {
+        let broken = |law: &'static str, landmark: Landmark, detail: String| {
             Err(Error::Law {
                 plugin: plugin.into(),
                 law,
-                point: landmark as usize,
+                point: landmark.index(),
                 detail,
             })
         };
@@ -89,7 +89,7 @@ impl Triangulation {
         if complex.vertices != count {
             let law = "answer: the complex is on the landmarks";
             let detail = format!("{} vertices for {count} landmarks", complex.vertices);
-            return broken(law, 0, detail);
+            return broken(law, Landmark::default(), detail);
         }
         let mut told = [&complex.curve_edges, &waist.curve_edges].map(|edges| {
             let mut sorted: Vec<_> = edges.iter().map(|e| (e.ends, e.cells)).collect();
@@ -104,15 +104,15 @@ impl Triangulation {
                 (a, b) => {
                     let law = "answer: the curve edges are those of the waist";
                     let at = a.or(b).map_or(0, |edge| edge.0[0]);
-                    return broken(law, at, format!("{a:?} in place of {b:?}"));
+                    return broken(law, at.into(), format!("{a:?} in place of {b:?}"));
                 }
             }
         }
         let homes = Homes::of(waist);
         for corners in &complex.triangles {
-            if !homes.share(*corners) {
+            if !homes.share(corners.map(Landmark::from)) {
                 let law = "answer: the corners of a triangle are together in one neighborhood";
-                return broken(law, corners[0], format!("the triangle {corners:?}"));
+                return broken(law, corners[0].into(), format!("the triangle {corners:?}"));
             }
         }
         self.names_landmarks(count).or_else(|(landmark, detail)| {
@@ -121,18 +121,20 @@ impl Triangulation {
         })
     }
 
-    fn names_landmarks(&self, count: usize) -> Result<(), (u32, String)> {
-        let open: Vec<u32> = self.incomplete.iter().map(|i| i.landmark).collect();
+    fn names_landmarks(&self, count: usize) -> Result<(), (Landmark, String)> {
+        let open: Vec<Landmark> = self.incomplete.iter().map(|i| i.landmark).collect();
         for named in [&self.dropped, &open] {
             let rises = named.is_sorted_by(|a, b| a < b);
-            let last = named.last().copied().unwrap_or(0);
-            if !rises || (last as usize) >= count.max(1) {
+            let last = named.last().copied().unwrap_or_default();
+            if !rises || last.index() >= count.max(1) {
+                let named: Vec<usize> = named.iter().map(|k| k.index()).collect();
                 return Err((last, format!("{named:?} of {count} landmarks, in order")));
             }
         }
-        let mut corners = self.complex.triangles.iter().flatten();
+        let corners = self.complex.triangles.iter().flatten();
+        let mut corners = corners.copied().map(Landmark::from);
         match corners.find(|c| self.dropped.binary_search(c).is_ok()) {
-            Some(&c) => Err((c, format!("landmark {c} was dropped and has a triangle"))),
+            Some(c) => Err((c, format!("landmark {c} was dropped and has a triangle"))),
             None => Ok(()),
         }
     }
@@ -149,7 +151,7 @@ impl Homes {
         let mut starts = vec![0u32; waist.strata.len() + 1];
         let members = || waist.neighborhoods.iter().map(|near| &near.members);
         for &m in members().flatten() {
-            starts[m as usize + 1] += 1;
+            starts[m.index() + 1] += 1;
         }
         for k in 1..starts.len() {
             starts[k] += starts[k - 1];
@@ -158,20 +160,20 @@ impl Homes {
         let mut list = vec![0u32; members().map(Vec::len).sum()];
         for (home, members) in (0..).zip(members()) {
             for &m in members {
-                list[free[m as usize] as usize] = home;
-                free[m as usize] += 1;
+                list[free[m.index()] as usize] = home;
+                free[m.index()] += 1;
             }
         }
         Self { starts, list }
     }
 
-    fn at(&self, landmark: u32) -> &[u32] {
-        let k = landmark as usize;
+    fn at(&self, landmark: Landmark) -> &[u32] {
+        let k = landmark.index();
         &self.list[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 
     /// Whether one neighborhood holds all three.
-    fn share(&self, corners: [u32; 3]) -> bool {
+    fn share(&self, corners: [Landmark; 3]) -> bool {
         let [a, b, c] = corners.map(|corner| self.at(corner));
         let in_both = |home: &&u32| b.binary_search(home).is_ok() && c.binary_search(home).is_ok();
         a.iter().any(|home| in_both(&home))

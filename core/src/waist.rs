@@ -3,25 +3,13 @@
 //! Whatever produces this type can be triangulated, whatever triangulates it can be
 //! swapped. It holds no coordinates: a laboratory that measures distances can fill it.
 
-use crate::{CurveEdge, Error, Scalar, SparseDistances};
+use crate::{CellNeighborhood, CurveEdge, Error, Landmark, Scalar, SparseDistances, Table};
 use serde::{Deserialize, Serialize};
-
-/// What lies around one landmark inside one cell.
-///
-/// A landmark on a 2-stratum has one; a landmark on a curve has one for each cell that meets there.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct CellNeighborhood {
-    /// The landmark.
-    pub center: u32,
-    /// The landmarks of the cell near it, and those on the curves at the rim of the cell;
-    /// the center is the first, then by increasing distance.
-    pub members: Vec<u32>,
-}
 
 /// Stratified landmark neighborhoods with sparse distances: all that a triangulator knows.
 ///
 /// # Invariants
-/// Indices are below `strata.len()`; the distance of every two members of a neighborhood is kept;
+/// Landmarks are below `strata.len()`; the distance of every two members of a neighborhood is kept;
 /// ends of curve edges are landmarks of stratum dimension 0 or 1. [`StratifiedLandmarks::check`]
 /// tells.
 ///
@@ -33,7 +21,7 @@ pub struct CellNeighborhood {
 )]
 pub struct StratifiedLandmarks<S> {
     /// For each landmark the dimension of its stratum: 0, 1 or 2.
-    pub strata: Vec<u8>,
+    pub strata: Table<Landmark, u8>,
     /// The chains: edges along the curves.
     pub curve_edges: Vec<CurveEdge>,
     /// Neighborhoods, one for each landmark and cell.
@@ -49,33 +37,55 @@ impl<S: Scalar> StratifiedLandmarks<S> {
     /// [`Error::Index`] or [`Error::Shape`] for the first one that does not hold.
     pub fn check(&self) -> Result<(), Error> {
         let count = self.strata.len();
-        let in_range = |index: u32| {
-            if (index as usize) < count {
-                Ok(())
-            } else {
-                Err(Error::Index {
-                    what: "landmark",
-                    index: index as usize,
-                    limit: count,
-                })
-            }
-        };
         if self.distances.len() != count {
             return Err(Error::Shape {
                 found: format!("distances of {} landmarks", self.distances.len()),
                 expected: format!("{count}"),
             });
         }
-        if let Some(k) = self.strata.iter().position(|&d| d > 2) {
+        if let Some((k, d)) = self.strata.each().find(|x| *x.1 > 2) {
             return Err(Error::Shape {
-                found: format!("landmark {k} on a stratum of dimension {}", self.strata[k]),
+                found: format!("landmark {k} on a stratum of dimension {d}"),
                 expected: "0, 1 or 2".into(),
             });
         }
+        self.check_edges()?;
+        // The neighborhood that a landmark was in last, and its position there.
+        let mut round: Table<Landmark, u64> = Table::filled(count, u64::MAX);
+        for (k, near) in (0_u64..).zip(&self.neighborhoods) {
+            if near.members.first() != Some(&near.center) {
+                return Err(Error::Shape {
+                    found: format!(
+                        "a neighborhood of {} that starts with {:?}",
+                        near.center,
+                        near.members.first().map(|m| m.index())
+                    ),
+                    expected: "the center first".into(),
+                });
+            }
+            let members = near.members.iter();
+            members.copied().try_for_each(|m| self.in_range(m))?;
+            self.check_distances(near, k << 32, &mut round)?;
+        }
+        Ok(())
+    }
+
+    fn in_range(&self, landmark: Landmark) -> Result<(), Error> {
+        match self.strata.get(landmark) {
+            Some(_) => Ok(()),
+            None => Err(Error::Index {
+                what: "landmark",
+                index: landmark.index(),
+                limit: self.strata.len(),
+            }),
+        }
+    }
+
+    fn check_edges(&self) -> Result<(), Error> {
         for edge in &self.curve_edges {
-            for end in edge.ends {
-                in_range(end)?;
-                if self.strata[end as usize] > 1 {
+            for end in edge.landmarks() {
+                self.in_range(end)?;
+                if self.strata[end] > 1 {
                     return Err(Error::Shape {
                         found: format!(
                             "curve edge {:?} at landmark {end} of a surface cell",
@@ -86,42 +96,35 @@ impl<S: Scalar> StratifiedLandmarks<S> {
                 }
             }
         }
-        // The neighborhood that a landmark was in last, and its position there.
-        let mut round = vec![u64::MAX; count];
-        for (k, near) in self.neighborhoods.iter().enumerate() {
-            if near.members.first() != Some(&near.center) {
-                return Err(Error::Shape {
-                    found: format!(
-                        "a neighborhood of {} that starts with {:?}",
-                        near.center,
-                        near.members.first()
-                    ),
-                    expected: "the center first".into(),
-                });
+        Ok(())
+    }
+
+    /// Whether the distances of all members are kept. `first` and what follows it, one for each member, are numbers that
+    /// `round` has had for none.
+    fn check_distances(
+        &self,
+        near: &CellNeighborhood,
+        first: u64,
+        round: &mut Table<Landmark, u64>,
+    ) -> Result<(), Error> {
+        for (i, &m) in (0_u64..).zip(&near.members) {
+            round[m] = first + i;
+        }
+        // Every member's row is gone through once, rather than searched for every other.
+        for (i, &a) in near.members.iter().enumerate() {
+            let before = |b: Landmark| round[b].wrapping_sub(first) < i as u64;
+            let kept: usize = (self.distances.row(a))
+                .map(|x| usize::from(before(x.0)))
+                .sum();
+            if kept == i {
+                continue;
             }
-            for &m in &near.members {
-                in_range(m)?;
-            }
-            let first = (k as u64) << 32;
-            for (i, &m) in (0_u64..).zip(&near.members) {
-                round[m as usize] = first + i;
-            }
-            // Every member's row is gone through once, rather than searched for every other.
-            for (i, &a) in near.members.iter().enumerate() {
-                let before = |b: u32| round[b as usize].wrapping_sub(first) < i as u64;
-                let kept: usize = (self.distances.row(a))
-                    .map(|x| usize::from(before(x.0)))
-                    .sum();
-                if kept == i {
-                    continue;
-                }
-                for &b in &near.members[..i] {
-                    if self.distances.get(a, b).is_none() {
-                        return Err(Error::Shape {
-                            found: format!("no distance between landmarks {a} and {b}"),
-                            expected: format!("one, as both are near landmark {}", near.center),
-                        });
-                    }
+            for &b in &near.members[..i] {
+                if self.distances.get(a, b).is_none() {
+                    return Err(Error::Shape {
+                        found: format!("no distance between landmarks {a} and {b}"),
+                        expected: format!("one, as both are near landmark {}", near.center),
+                    });
                 }
             }
         }
@@ -133,7 +136,7 @@ impl<S: Scalar> StratifiedLandmarks<S> {
 #[derive(Deserialize)]
 #[serde(bound(deserialize = "S: Scalar + Deserialize<'de>"))]
 struct Unchecked<S> {
-    strata: Vec<u8>,
+    strata: Table<Landmark, u8>,
     curve_edges: Vec<CurveEdge>,
     neighborhoods: Vec<CellNeighborhood>,
     distances: SparseDistances<S>,
@@ -162,14 +165,17 @@ mod tests {
     /// Two triangles on an edge of a curve.
     fn waist() -> StratifiedLandmarks<f64> {
         let around = |center: u32, others: [u32; 2]| CellNeighborhood {
-            center,
-            members: vec![center, others[0], others[1]],
+            center: center.into(),
+            members: [center, others[0], others[1]].map(Landmark::from).to_vec(),
         };
         let neighborhoods = vec![around(2, [0, 1]), around(3, [0, 1])];
         StratifiedLandmarks {
-            strata: vec![1, 1, 2, 2],
+            strata: vec![1, 1, 2, 2].into(),
             curve_edges: vec![CurveEdge::new(0, 1, 2)],
-            distances: SparseDistances::within(4, &neighborhoods, |a, b| f64::from(a + b)).unwrap(),
+            distances: SparseDistances::within(4, &neighborhoods, |a, b| {
+                (a.index() + b.index()) as f64
+            })
+            .unwrap(),
             neighborhoods,
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::arrays::rows;
 use crate::run::Run;
-use crosscap_core::{Decomposition, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{Decomposition, Label, LocalPoints, Rejection, SingularityModel, Stratum};
 use pyo3::prelude::*;
 
 /// A singularity model: a function of the points of a neighborhood in their principal coordinates, how many of them
@@ -75,7 +75,7 @@ impl SingularityModel for PyModel {
         let strata = told.strata.into_iter();
         Ok(Decomposition {
             strata: strata.map(|dimension| Stratum { dimension }).collect(),
-            labels: told.labels,
+            labels: told.labels.into_iter().map(Label::from).collect(),
             cells_at_curve: told.cells_at_curve,
             residual: told.residual,
             parameters: told.parameters,

@@ -3,6 +3,7 @@
 //! [`Parameters::auto`] is the way in. The lengths come from the [`Density`] of the points; what the
 //! user has [`Pinned`] stays as it is. What was tried, and why, is in [`Search::attempts`].
 
+mod alone;
 mod attempt;
 mod density;
 mod input;
@@ -25,6 +26,7 @@ pub use rounded::Rounded;
 pub use search::{Choice, Doubt, Search};
 
 use crate::pipeline::{Parameters, Pipeline};
+use crosscap_algorithms::tuning::PreparationTuning;
 use crosscap_backends::files::Distances;
 use crosscap_core::{Error, PointCloud};
 use std::time::Duration;
@@ -46,10 +48,11 @@ pub struct Auto {
     pinned: Pinned,
     tries: usize,
     time_limit: Option<Duration>,
+    preparation: PreparationTuning,
 }
 
 /// Attempts at most, where nothing is said.
-pub const USUAL_TRIES: usize = 6;
+pub const USUAL_TRIES: usize = 7;
 
 impl Default for Auto {
     fn default() -> Self {
@@ -64,6 +67,7 @@ impl Auto {
             pinned,
             tries: USUAL_TRIES,
             time_limit: None,
+            preparation: PreparationTuning::MEASURED,
         }
     }
 
@@ -88,6 +92,12 @@ impl Auto {
     /// No further attempt begins after this time. An attempt that has begun is finished.
     pub fn time_limit(mut self, limit: Duration) -> Self {
         self.time_limit = Some(limit);
+        self
+    }
+
+    /// The numbers that decide which points are outliers, and where points that scatter are moved.
+    pub fn preparation(mut self, tuning: PreparationTuning) -> Self {
+        self.preparation = tuning;
         self
     }
 

@@ -45,6 +45,8 @@ const LOCAL: usize = 30;
 /// Factors on eps, or on both lengths.
 const LARGER: f64 = 1.3;
 const SMALLER: f64 = 0.8;
+/// Part of the separation that the gaps of the points ask for that is taken: landmarks lie as chance has it.
+const ROOMY: f64 = 0.95;
 /// Factor on the separation alone.
 const FINER: f64 = 0.75;
 /// Spacings of one point in a hundred that are this many times those of another one vary more than one separation
@@ -122,6 +124,19 @@ impl Move {
         }
         .filter(|found| found.dl >= CLOSEST * least && found.check().is_ok() && found != from)
     }
+}
+
+/// Both lengths by one factor, so that the separation is below the `needed` one; neighborhoods as large as before would see
+/// the other side of a hole.
+pub(super) fn opened(
+    from: &Parameters,
+    pinned: &Pinned,
+    density: &Density,
+    needed: f64,
+) -> Option<Parameters> {
+    let factor = ROOMY * needed / from.dl;
+    let next = (factor < 1.0).then(|| scaled(from, pinned, factor, factor))??;
+    (next.dl >= CLOSEST * density.dense && next.check().is_ok()).then_some(next)
 }
 
 /// Whether every point may be taken as one of a surface, with distances along it.

@@ -1,12 +1,17 @@
 //! The points as they are worked on: without outliers, and where they scatter moved onto fits of their
 //! neighborhoods.
 
+use super::alone;
 use super::input::Input;
 use crate::pipeline::{Outcome, Parameters, Pipeline, distinct_rows};
 use crosscap_algorithms::certificate::{CertificateOptions, CoverReport, Place, certify};
 use crosscap_algorithms::prepare::{Preparation, PreparationSummary, Remedies};
+use crosscap_algorithms::tuning::PreparationTuning;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{Error, PointCloud};
+
+/// Rounds of leaving out points that a mesh shows to be alone.
+const ROUNDS: usize = 2;
 
 /// The input of all attempts.
 pub(super) struct Prepared<'a> {
@@ -14,8 +19,11 @@ pub(super) struct Prepared<'a> {
     given: Input<'a>,
     /// The points that are worked on instead, where something was done about them.
     better: Option<Better>,
+    /// Whether points may be left out.
+    may_leave_out: bool,
 }
 
+#[derive(Clone)]
 struct Better {
     cloud: PointCloud<f64>,
     /// Row of the input of every point.
@@ -33,11 +41,16 @@ impl<'a> Prepared<'a> {
         Self {
             given,
             better: None,
+            may_leave_out: false,
         }
     }
 
     /// Whatever the points need. Distances alone stay as they are.
-    pub(super) fn of(given: Input<'a>, threads: usize) -> Result<Self, Error> {
+    pub(super) fn of(
+        given: Input<'a>,
+        tuning: &PreparationTuning,
+        threads: usize,
+    ) -> Result<Self, Error> {
         let Input::Points(cloud) = given else {
             return Ok(Self::unchanged(given));
         };
@@ -45,13 +58,11 @@ impl<'a> Prepared<'a> {
         let distinct = cloud.select(&kept);
         let threads = Threads::new(threads)?;
         // Clouds of a dozen points are left alone.
-        let Ok(found) = Preparation::of(&distinct, Remedies::ALL, &threads) else {
+        let Ok(found) = Preparation::of(&distinct, Remedies::ALL, tuning, &threads) else {
             return Ok(Self::unchanged(given));
         };
-        if !found.left_out && found.projection.is_none() {
-            return Ok(Self::unchanged(given));
-        }
-        let better = Better {
+        let changed = found.left_out || found.projection.is_some();
+        let better = changed.then(|| Better {
             cloud: found.points(&distinct),
             unmoved: distinct.select(&found.kept),
             rows: found.kept.iter().map(|&k| kept[k]).collect(),
@@ -59,17 +70,13 @@ impl<'a> Prepared<'a> {
                 (Some(_), Some(noise)) => noise.deviation,
                 _ => 0.0,
             },
-            summary: found.summary(),
-        };
+            summary: found.summary().named(|row| kept[row]),
+        });
         Ok(Self {
             given,
-            better: Some(better),
+            better,
+            may_leave_out: true,
         })
-    }
-
-    /// What was done, where something was.
-    pub(super) fn summary(&self) -> Option<&PreparationSummary> {
-        self.better.as_ref().map(|better| &better.summary)
     }
 
     /// The points that are worked on.
@@ -81,26 +88,106 @@ impl<'a> Prepared<'a> {
     }
 
     /// One reconstruction by the pipeline that `make` puts together; rows are those of the input.
+    ///
+    /// Where all that is wrong with the mesh is a few points [alone](alone::rows) far from it, they are outliers that nothing told before
+    /// there was a mesh, in line with a plate beyond its rim, say. They are left out and the same is made again.
     pub(super) fn run(
         &self,
         parameters: &Parameters,
         make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
-    ) -> Result<Result<Outcome, Error>, Error> {
-        let Some(better) = &self.better else {
-            return Ok(self.given.run(&mut make(parameters.clone())?));
+    ) -> Result<Made, Error> {
+        let mut better = self.better.clone();
+        let mut rounds = 0;
+        loop {
+            let outcome = match &better {
+                None => self.given.run(&mut make(parameters.clone())?),
+                Some(better) => better.run(parameters, make)?,
+            };
+            let alone = match (&outcome, self.given) {
+                (Ok(outcome), Input::Points(given)) if self.may_leave_out && rounds < ROUNDS => {
+                    let rows = better.as_ref().map(|better| &better.rows[..]);
+                    alone::rows(outcome, given, rows)
+                }
+                _ => Vec::new(),
+            };
+            if alone.is_empty() {
+                let summary = better.map(|better| better.summary);
+                return Ok(Made { outcome, summary });
+            }
+            better = Some(self.without(better, &alone)?);
+            rounds += 1;
+        }
+    }
+
+    /// The points that are worked on, without some rows of the input.
+    fn without(&self, better: Option<Better>, rows: &[usize]) -> Result<Better, Error> {
+        let better = match (better, self.given) {
+            (None, Input::Points(given)) => Better::unchanged(given)?,
+            (Some(better), _) => better,
+            (None, Input::Distances(_)) => {
+                return Err(Error::Shape {
+                    found: "distances alone".into(),
+                    expected: "points".into(),
+                });
+            }
         };
-        let mut own = parameters.clone();
-        let position = |row: &usize| better.rows.binary_search(row).ok();
-        own.boundary = parameters.boundary.iter().filter_map(position).collect();
-        let outcome = make(own)?.reconstruct(&better.cloud);
-        Ok(match outcome {
-            Ok(outcome) => Ok(better.in_input(outcome, parameters)),
-            Err(error) => Err(better.named(error)),
-        })
+        Ok(better.without(rows))
     }
 }
 
+/// What an attempt yielded.
+pub(super) struct Made {
+    pub(super) outcome: Result<Outcome, Error>,
+    /// What was done about outliers and noise, where something was.
+    pub(super) summary: Option<PreparationSummary>,
+}
+
 impl Better {
+    /// The different points as they are.
+    fn unchanged(given: &PointCloud<f64>) -> Result<Self, Error> {
+        let rows = distinct_rows(given);
+        let cloud = given.select(&rows);
+        let tuning = PreparationTuning::MEASURED;
+        let found = Preparation::of(&cloud, Remedies::NONE, &tuning, &Threads::new(1)?)?;
+        Ok(Self {
+            unmoved: cloud.clone(),
+            cloud,
+            rows,
+            noise: 0.0,
+            summary: found.summary(),
+        })
+    }
+
+    /// The same without some rows of the input.
+    fn without(self, rows: &[usize]) -> Self {
+        let stays = |row: usize| !rows.contains(&row);
+        let kept: Vec<usize> = (0..self.rows.len())
+            .filter(|&at| stays(self.rows[at]))
+            .collect();
+        Self {
+            cloud: self.cloud.select(&kept),
+            unmoved: self.unmoved.select(&kept),
+            rows: kept.iter().map(|&at| self.rows[at]).collect(),
+            noise: self.noise,
+            summary: self.summary.without(rows),
+        }
+    }
+
+    /// One reconstruction; rows are those of the input.
+    fn run(
+        &self,
+        parameters: &Parameters,
+        make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
+    ) -> Result<Result<Outcome, Error>, Error> {
+        let mut own = parameters.clone();
+        let position = |row: &usize| self.rows.binary_search(row).ok();
+        own.boundary = parameters.boundary.iter().filter_map(position).collect();
+        Ok(match make(own)?.reconstruct(&self.cloud) {
+            Ok(outcome) => Ok(self.in_input(outcome, parameters)),
+            Err(error) => Err(self.named(error)),
+        })
+    }
+
     /// The outcome with rows of the input, its mesh measured against the points where they were given.
     fn in_input(&self, mut outcome: Outcome, parameters: &Parameters) -> Outcome {
         if self.noise > 0.0 {

@@ -4,6 +4,7 @@ use super::input::Input;
 use crate::pipeline::distinct_points;
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::prepare::{LocalSpacing, Resolution};
+use crosscap_algorithms::tuning::ResolutionTuning;
 use crosscap_core::PointCloud;
 use serde::Serialize;
 use std::fmt;
@@ -29,14 +30,14 @@ const FAR: f64 = (1_u32 << 22) as f64;
 
 impl Rounded {
     /// What there is to say against the coordinates of an input; nothing for distances.
-    pub(super) fn of(input: &Input<'_>) -> Option<Self> {
+    pub(super) fn of(input: &Input<'_>, tuning: &ResolutionTuning) -> Option<Self> {
         match input {
-            Input::Points(cloud) => Self::in_cloud(cloud),
+            Input::Points(cloud) => Self::in_cloud(cloud, tuning),
             Input::Distances(_) => None,
         }
     }
 
-    fn in_cloud(cloud: &PointCloud<f64>) -> Option<Self> {
+    fn in_cloud(cloud: &PointCloud<f64>, tuning: &ResolutionTuning) -> Option<Self> {
         let coordinates = cloud.coordinates().iter();
         let largest = coordinates.fold(0.0_f64, |most, x| most.max(x.abs()));
         // Most clouds are told by this alone.
@@ -45,7 +46,7 @@ impl Rounded {
         }
         let distinct = distinct_points(cloud);
         let spacing = LocalSpacing::of(&distinct, &Serial).ok()?;
-        let found = Resolution::of(&distinct, &spacing);
+        let found = Resolution::of(&distinct, &spacing, tuning);
         let is_far = largest >= FAR * found.step;
         (is_far && found.of_spacing >= TOO_COARSE).then(|| Self {
             step: found.step,

@@ -8,9 +8,9 @@ use super::Auto;
 use super::attempt::{Attempt, End, Topology};
 use super::density::Density;
 use super::input::Input;
-use super::moves::other_landmarks;
+use super::moves::{opened, other_landmarks};
 use super::pinned::Pinned;
-use super::prepared::Prepared;
+use super::prepared::{Made, Prepared};
 use super::rounded::Rounded;
 use super::symptoms::Symptom;
 use crate::pipeline::{Outcome, Parameters, Pipeline};
@@ -100,8 +100,12 @@ struct Progress<'a> {
     attempts: Vec<Attempt>,
     /// What went wrong in each.
     symptoms: Vec<Option<Symptom>>,
+    /// The separation below which each would have left the gaps of the points open, where it did not.
+    needed: Vec<Option<f64>>,
     /// The attempt that came farthest.
     best: Option<(usize, Result<Outcome, Error>)>,
+    /// What was done about outliers and noise in that attempt.
+    preparation: Option<PreparationSummary>,
     began: Instant,
 }
 
@@ -147,7 +151,7 @@ impl Auto {
         make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
     ) -> Result<Search, Error> {
         let prepared = if self.pinned().is_prepared() {
-            Prepared::of(input, self.pinned().threads.unwrap_or(0))?
+            Prepared::of(input, &self.preparation, self.pinned().threads.unwrap_or(0))?
         } else {
             Prepared::unchanged(input)
         };
@@ -163,7 +167,9 @@ impl Auto {
             pinned: self.pinned().clone(),
             attempts: Vec::new(),
             symptoms: Vec::new(),
+            needed: Vec::new(),
             best: None,
+            preparation: None,
             began: Instant::now(),
         };
         let symptom = match progress.attempt(first.clone(), reason.clone(), make) {
@@ -173,13 +179,20 @@ impl Auto {
             ended => ended?,
         };
         // Nothing that is tried mends the coordinates.
-        let doubt = match (Rounded::of(&input), symptom) {
+        let doubt = match (Rounded::of(&input, &self.preparation.resolution), symptom) {
             (Some(rounded), _) => Some(Doubt::Rounded(rounded)),
             (None, Some(_)) => progress.further(make)?,
             (None, None) => None,
         };
         progress.end(doubt)
     }
+}
+
+/// The landmark separation that the gaps of the points ask for, where they are what is wrong.
+fn gap_needs(symptom: Option<Symptom>, outcome: &Result<Outcome, Error>) -> Option<f64> {
+    let outcome = outcome.as_ref().ok()?;
+    let needed = outcome.certificate.faithful.as_ref()?.separation_needed;
+    needed.filter(|&n| symptom == Some(Symptom::Gaps) && n < outcome.report.parameters.dl)
 }
 
 impl Progress<'_> {
@@ -218,7 +231,7 @@ impl Progress<'_> {
         // Every further attempt is another chance for a wrong mesh to pass.
         let times = self.attempts.len() + 1;
         let mut make = |parameters| make(parameters).map(|pipeline| pipeline.stricter(times));
-        let outcome = self.prepared.run(&parameters, &mut make)?;
+        let Made { outcome, summary } = self.prepared.run(&parameters, &mut make)?;
         // What was chosen later may not suit the input; that is no fault of the input.
         if let Err(error) = &outcome
             && (*error == Error::Interrupted || error.is_input() && self.attempts.is_empty())
@@ -227,9 +240,11 @@ impl Progress<'_> {
         }
         let end = End::of(&outcome);
         let symptom = (!end.is_verified()).then(|| Symptom::of(&outcome));
+        self.needed.push(gap_needs(symptom, &outcome));
         let nearer = |best: &(usize, _)| end.rank() > self.attempts[best.0].end.rank();
         if self.best.as_ref().is_none_or(nearer) {
             self.best = Some((self.attempts.len(), outcome));
+            self.preparation = summary;
         }
         self.symptoms.push(symptom);
         self.attempts.push(Attempt {
@@ -241,15 +256,21 @@ impl Progress<'_> {
         Ok(symptom)
     }
 
-    /// Whether another attempt may begin.
-    fn may_go_on(&self) -> bool {
+    /// Whether another attempt may begin: the last one is kept to confirm what has `passed`, as nothing is handed over
+    /// without.
+    fn may_go_on(&self, passed: bool) -> bool {
         let in_time = |limit: Duration| self.began.elapsed() < limit;
-        self.attempts.len() < self.auto.tries && self.auto.time_limit.is_none_or(in_time)
+        let ends = self.auto.tries - usize::from(!passed);
+        self.attempts.len() < ends && self.auto.time_limit.is_none_or(in_time)
     }
 
     /// Other landmarks for the attempt that came farthest, where it nearly passed and they were not tried so often yet.
     fn nearly(&self) -> Option<Parameters> {
         let farthest = self.best.as_ref()?.0;
+        // No chance of the landmarks opens a gap that they are too far apart for.
+        if self.needed[farthest].is_some() {
+            return None;
+        }
         let near = (self.attempts.get(farthest)).filter(|attempt| attempt.end.is_near_miss())?;
         let of = &near.parameters;
         let alike = |other: &&Attempt| {
@@ -273,10 +294,15 @@ impl Progress<'_> {
             return Some((next, "other landmarks, as little is wrong"));
         }
         let farthest = self.best.as_ref().map_or(0, |best| best.0);
+        let fresh = |next: &Parameters| self.attempts.iter().all(|a| a.parameters != *next);
         [farthest, 0].into_iter().find_map(|index| {
             let from = &self.attempts[index].parameters;
+            if let Some(next) = self.needed[index].and_then(|dl| opened(from, pinned, density, dl))
+                && fresh(&next)
+            {
+                return Some((next, "landmarks near enough to leave the gaps open"));
+            }
             let moves = self.symptoms[index].map_or(&[][..], Symptom::moves);
-            let fresh = |next: &Parameters| self.attempts.iter().all(|a| a.parameters != *next);
             moves.iter().find_map(|step| {
                 let next = step.apply(from, pinned, density).filter(fresh)?;
                 Some((next, step.reason()))
@@ -302,7 +328,7 @@ impl Progress<'_> {
         };
         let mut passed: Option<(Topology, Parameters)> = None;
         let mut confirmations = 0;
-        while self.may_go_on() {
+        while self.may_go_on(passed.is_some()) {
             confirmations += usize::from(passed.is_some());
             let next = match &passed {
                 Some((_, parameters)) => other_landmarks(parameters, &self.pinned, confirmations)
@@ -339,7 +365,7 @@ impl Progress<'_> {
         };
         let (chosen, outcome) = self.best.ok_or_else(nothing)?;
         Ok(Search {
-            preparation: self.prepared.summary().cloned(),
+            preparation: self.preparation,
             density: self.density,
             attempts: self.attempts,
             chosen,

@@ -10,20 +10,17 @@ fn sample(name: &str, count: usize) -> PointCloud<f64> {
     surface.sample(&Sampling::new(count, 5)).unwrap().points
 }
 
-/// Pipelines whose first attempt is spoiled by landmarks that are much too far apart.
-fn spoiled() -> impl FnMut(Parameters) -> Result<Pipeline, Error> {
-    let mut first = true;
+/// Pipelines of which these attempts, from 0, are spoiled by landmarks that are much too far apart.
+fn spoiled(which: &[usize]) -> impl FnMut(Parameters) -> Result<Pipeline, Error> {
+    let mut attempts = 0..;
     move |parameters| {
         let coarse = Parameters {
             dl: 1.4,
             eps: 1.6,
             ..parameters.clone()
         };
-        Pipeline::new(if std::mem::take(&mut first) {
-            coarse
-        } else {
-            parameters
-        })
+        let spoil = attempts.next().is_some_and(|now| which.contains(&now));
+        Pipeline::new(if spoil { coarse } else { parameters })
     }
 }
 
@@ -31,7 +28,7 @@ fn spoiled() -> impl FnMut(Parameters) -> Result<Pipeline, Error> {
 fn what_passes_after_a_failure_is_confirmed_by_other_landmarks() {
     let cloud = sample("sphere", 2000);
     let search = Auto::default()
-        .search(Input::Points(&cloud), &mut spoiled())
+        .search(Input::Points(&cloud), &mut spoiled(&[0]))
         .unwrap();
     let ends: Vec<bool> = search
         .attempts
@@ -52,18 +49,34 @@ fn what_passes_after_a_failure_is_confirmed_by_other_landmarks() {
 fn what_passes_after_a_failure_is_not_handed_over_unconfirmed() {
     let cloud = sample("sphere", 2000);
     let search = Auto::default()
-        .tries(2)
-        .search(Input::Points(&cloud), &mut spoiled())
+        .tries(3)
+        .search(Input::Points(&cloud), &mut spoiled(&[0, 2]))
         .unwrap();
     assert!(matches!(search.doubt, Some(Doubt::Unconfirmed(_))));
     assert!(!search.is_verified());
     let refusal = search.into_verified(Some(&cloud)).unwrap_err();
     assert_eq!(refusal.faults[0].kind, FaultKind::Unconfirmed);
-    assert_eq!(refusal.attempts.len(), 2);
+    assert_eq!(refusal.attempts.len(), 3);
     assert!(matches!(refusal.advice, Advice::MoreTries));
-    let more = Auto::default().tries(3);
-    let search = more.search(Input::Points(&cloud), &mut spoiled()).unwrap();
+    let more = Auto::default().tries(4);
+    let search = more
+        .search(Input::Points(&cloud), &mut spoiled(&[0, 2]))
+        .unwrap();
     assert!(search.is_verified());
+}
+
+/// The last attempt is kept to confirm one that passed: an attempt that no other can confirm is not made.
+#[test]
+fn the_last_attempt_confirms() {
+    let cloud = sample("sphere", 2000);
+    let with = |tries| {
+        let auto = Auto::default().tries(tries);
+        let search = auto.search(Input::Points(&cloud), &mut spoiled(&[0]));
+        let search = search.unwrap();
+        (search.attempts.len(), search.is_verified())
+    };
+    assert_eq!(with(2), (1, false));
+    assert_eq!(with(3), (3, true));
 }
 
 #[test]
@@ -137,7 +150,7 @@ fn points_that_fill_a_space_are_told_and_without_the_column_it_is_verified() {
     let mut random = Random::new(7);
     let rows = (0..3000).flat_map(|_| [(); 3].map(|()| random.uniform()));
     let solid = PointCloud::new(3, rows.collect()).unwrap();
-    let search = Parameters::auto().tries(2).reconstruct(&solid).unwrap();
+    let search = Parameters::auto().tries(3).reconstruct(&solid).unwrap();
     let refusal = search.into_verified(Some(&solid)).unwrap_err();
     assert_eq!(refusal.faults[0].kind, FaultKind::Dimension, "{refusal}");
     assert!(matches!(refusal.advice, Advice::FewerDimensions));

@@ -9,8 +9,9 @@ use super::parameters::{ATTEMPTS, Help, MAIN, MethodName, ParameterArguments};
 
 use super::points::PointArguments;
 use super::terminal::{Progress, complain, say};
-use super::{choice, output, overlay, picture, refused};
+use super::{choice, output, overlay, picture, refused, repeat};
 use clap::Args;
+use crosscap::auto::USUAL_TRIES;
 use crosscap::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap::{Advice, Auto, Pinned, Refusal};
 use crosscap_backends::files::{
@@ -42,7 +43,7 @@ const SHORT: &str = "Examples:
 /// Fewest points: what one neighborhood needs.
 const LEAST_POINTS: usize = 8;
 /// Attempts with parameters of the program's choice before they are advised.
-const TRIES_FOR_ADVICE: usize = 2;
+const TRIES_FOR_ADVICE: usize = 3;
 
 /// Reconstruct a surface from points: triangulate, check, write
 #[derive(Args, Debug)]
@@ -82,7 +83,7 @@ pub struct Reconstruct {
     /// Attempts at most, where parameters are left to the program
     ///
     /// A mesh that passes after others have failed counts only when another attempt, with other landmarks, agrees.
-    #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "N", default_value_t = USUAL_TRIES as u16, value_parser = clap::value_parser!(u16).range(1..=1000))]
     tries: u16,
 
     /// Seconds after which no further attempt begins
@@ -161,10 +162,12 @@ impl Reconstruct {
         mut refusal: Refusal,
         told: &Value,
     ) -> Result<(), Failure> {
-        if let Some(advice) = self.better(input, pinned, &refusal)? {
+        let better = self.better(input, pinned, &refusal)?;
+        let options = better.map(|(advice, options)| {
             refusal.advice = advice;
-        }
-        refused::tell(&refusal);
+            options
+        });
+        refused::tell(&refusal, options.as_deref());
         let places = input.places();
         if let (Some(path), Some(points)) = (&self.cut_out, places) {
             refused::write_cut_out(path, &refusal, points)?;
@@ -179,7 +182,8 @@ impl Reconstruct {
             )));
         }
         if let Some(path) = &self.report {
-            refused::write_report(path, &refusal, self.described(input), told)?;
+            let input = self.described(input);
+            refused::write_report(path, &refusal, options.as_deref(), input, told)?;
         }
         if let Some(path) = &self.picture {
             refused::write_picture(path, &picture::title(self.input()), &refusal, places)?;
@@ -190,13 +194,14 @@ impl Reconstruct {
         )))
     }
 
-    /// For a run with eps and dl given: parameters of the program's choice, where they give a verified mesh.
+    /// For a run with eps and dl given: parameters of the program's choice, where they give a verified mesh, and the options
+    /// to give them by in place of those two.
     fn better(
         &self,
         input: &Input,
         pinned: &Pinned,
         refusal: &Refusal,
-    ) -> Result<Option<Advice>, Failure> {
+    ) -> Result<Option<(Advice, String)>, Failure> {
         let given = pinned.complete().is_some() && self.parameters.method == MethodName::Cells;
         if !given || !refused::may_be_helped(refusal) {
             return Ok(None);
@@ -207,7 +212,7 @@ impl Reconstruct {
             ..pinned.clone()
         };
         let estimator = self.parameters.estimator;
-        let search = Auto::new(free)
+        let search = Auto::new(free.clone())
             .tries(TRIES_FOR_ADVICE)
             .search(input.borrowed(), &mut |parameters| {
                 observed(parameters, estimator)
@@ -217,7 +222,11 @@ impl Reconstruct {
         }
         let attempt = search.attempts.get(search.chosen);
         let found = attempt.and_then(|a| Some((a.parameters.clone(), a.end.topology()?.clone())));
-        Ok(found.map(|(parameters, topology)| Advice::Parameters(Box::new(parameters), topology)))
+        let prepared = search.preparation.is_some();
+        Ok(found.map(|(parameters, topology)| {
+            let options = repeat::options(&free, &parameters, prepared);
+            (Advice::Parameters(Box::new(parameters), topology), options)
+        }))
     }
 
     /// The input, for reports.

@@ -15,18 +15,25 @@ use std::path::Path;
 /// Points that are cut out around the worst place: ten spacings around.
 const CUT_OUT: usize = 1500;
 
-/// A line for every kind of fault, and what to do.
-pub fn tell(refusal: &Refusal) {
+/// A line for every kind of fault, and what to do, with the options to do it by where they were tried.
+pub fn tell(refusal: &Refusal, options: Option<&str>) {
     for fault in &refusal.faults {
         complain(fault);
     }
-    complain(format_args!("what to do: {}", refusal.advice));
+    match options {
+        Some(options) => complain(format_args!(
+            "what to do: {}; give {options}",
+            refusal.advice
+        )),
+        None => complain(format_args!("what to do: {}", refusal.advice)),
+    }
 }
 
 /// The report of a refusal, with everything that is known of the mesh where there is one.
 pub fn write_report(
     path: &Path,
     refusal: &Refusal,
+    options: Option<&str>,
     input: Value,
     search: &Value,
 ) -> Result<(), Failure> {
@@ -47,6 +54,7 @@ pub fn write_report(
                 "faults": refusal.faults,
                 "advice": refusal.advice,
                 "advice_in_words": refusal.advice.to_string(),
+                "options": options,
             }),
         );
     }

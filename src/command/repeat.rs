@@ -13,10 +13,18 @@ pub fn command(pinned: &Pinned, chosen: &Parameters, prepared: bool) -> String {
     let own = std::env::args_os()
         .skip_while(|word| word != "reconstruct")
         .map(quoted);
-    let prepare = prepared && pinned.prepare.is_none();
-    let more = prepare.then(|| "--prepare yes".to_string());
-    let all = own.chain(flags(pinned, chosen)).chain(more);
-    all.fold("crosscap".into(), |line, word| line + " " + &word)
+    let more = Some(options(pinned, chosen, prepared)).filter(|more| !more.is_empty());
+    own.chain(more)
+        .fold("crosscap".into(), |line, word| line + " " + &word)
+}
+
+/// The options that stand for what was chosen beside what is pinned.
+pub fn options(pinned: &Pinned, chosen: &Parameters, prepared: bool) -> String {
+    let mut all = flags(pinned, chosen);
+    if prepared && pinned.prepare.is_none() {
+        all.push("--prepare yes".into());
+    }
+    all.join(" ")
 }
 
 /// The options of what was chosen, where it is not the default.

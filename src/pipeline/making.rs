@@ -1,8 +1,8 @@
 //! From waists to a mesh with a verdict, and again with more landmarks where that is what it lacks.
 
 use super::mesh::{at_input_row, mesh_of, special_points};
+use super::prepared::Prepared;
 use super::progress::Progress;
-use super::run::Prepared;
 use super::{Parts, Stage};
 use crate::spaces::MetricName;
 use crosscap_algorithms::certificate::{
@@ -12,7 +12,7 @@ use crosscap_algorithms::certificate::{
 use crosscap_algorithms::homology::{Homology, homology};
 use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::stratify::{Refinement, Stratification, WaistProducer};
-use crosscap_core::{Error, LocalChart, Mesh, PointCloud, Triangulation};
+use crosscap_core::{Error, LocalChart, Mesh, PointCloud, Row, Triangulation};
 
 /// What meshes of one cloud are made from.
 pub(super) struct Making<'m> {
@@ -29,7 +29,7 @@ pub(super) struct Triangulated {
     pub(super) waist: Stratification<f64>,
     pub(super) triangulation: Triangulation,
     /// Rows of the landmarks that were added.
-    pub(super) added: Vec<usize>,
+    pub(super) added: Vec<Row>,
 }
 
 /// A mesh and what is known of it.
@@ -83,7 +83,7 @@ impl Making<'_> {
     /// the points.
     fn triangulated(
         &self,
-        mut extra: Vec<usize>,
+        mut extra: Vec<Row>,
         progress: &mut Progress<'_>,
     ) -> Result<Triangulated, Error> {
         let mut round = 0;
@@ -133,7 +133,7 @@ impl Making<'_> {
     }
 
     /// Rows that should be landmarks as well, where the verdict on a mesh is that points are far from it.
-    fn left_behind(&self, made: &Triangulated, judged: &Judged) -> Vec<usize> {
+    fn left_behind(&self, made: &Triangulated, judged: &Judged) -> Vec<Row> {
         let uncovered = (judged.certificate.violations())
             .any(|violation| violation.kind == ViolationKind::UncoveredPoints);
         if !uncovered || !self.takes_more(&made.waist, &made.triangulation) {
@@ -170,14 +170,13 @@ impl Making<'_> {
         let Self {
             parts, prepared, ..
         } = self;
-        let dropped: Vec<usize> = (made.triangulation.dropped.iter())
-            .map(|&k| made.waist.rows[k as usize])
-            .collect();
+        let dropped = made.triangulation.dropped.iter();
+        let dropped = dropped.map(|&k| made.waist.rows[k]);
         let options = CertificateOptions {
             points: Some(&prepared.engines.cloud),
             landmark_separation: Some(parts.parameters.dl),
             separation_scale: prepared.engines.scale(),
-            unused_landmarks: &prepared.rows.in_input(&dropped),
+            unused_landmarks: &prepared.rows.in_input(dropped),
             special_points,
             closed: parts.parameters.boundary.is_empty()
                 && !parts.models.all().iter().any(|m| m.finds_boundary()),

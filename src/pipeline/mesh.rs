@@ -1,50 +1,41 @@
 //! From landmarks back to rows of the input: the mesh, its special points, what failed.
 
+use super::rows::InputRow;
+
 use crosscap_algorithms::certificate::SpecialPoint;
 use crosscap_algorithms::stratify::Stratification;
-use crosscap_core::{Complex, CurveEdge, Error, Mesh, PointCloud, Triangulation};
+use crosscap_core::{
+    Complex, CurveEdge, Error, Landmark, Mesh, PointCloud, Row, Table, Triangulation,
+};
 
 /// The mesh of a triangulation: landmarks that were dropped leave no vertex.
 pub(super) fn mesh_of(
     complex: &Complex,
     stratification: &Stratification<f64>,
     places: &PointCloud<f64>,
-    rows: &[usize],
+    rows: &Table<Row, InputRow>,
 ) -> Result<Mesh, Error> {
-    let mut used = vec![false; complex.vertices];
-    for &v in complex
-        .triangles
-        .iter()
-        .flatten()
-        .chain(complex.curve_edges.iter().flat_map(|e| &e.ends))
-    {
-        used[v as usize] = true;
+    let mut used: Table<Landmark, bool> = Table::filled(complex.vertices, false);
+    let corners = complex.triangles.iter().flatten();
+    for &k in corners.chain(complex.curve_edges.iter().flat_map(|e| &e.ends)) {
+        used[Landmark::from(k)] = true;
     }
-    let kept: Vec<u32> = (0..complex.vertices as u32)
-        .filter(|&v| used[v as usize])
-        .collect();
-    let mut name = vec![0u32; complex.vertices];
-    for (k, &v) in kept.iter().enumerate() {
-        name[v as usize] = k as u32;
+    let kept: Vec<Landmark> = used.ids().filter(|&k| used[k]).collect();
+    // Vertices of the mesh by landmark.
+    let mut vertices: Table<Landmark, u32> = Table::filled(complex.vertices, 0);
+    for (vertex, &k) in (0..).zip(&kept) {
+        vertices[k] = vertex;
     }
-    let triangles = complex
-        .triangles
-        .iter()
-        .map(|t| t.map(|v| name[v as usize]))
-        .collect();
-    let edges = complex
-        .curve_edges
-        .iter()
-        .map(|e| CurveEdge::new(name[e.ends[0] as usize], name[e.ends[1] as usize], e.cells))
-        .collect();
-    let landmark_rows: Vec<usize> = kept
-        .iter()
-        .map(|&v| stratification.rows[v as usize])
-        .collect();
+    let vertex = |k: u32| vertices[Landmark::from(k)];
+    let triangles = complex.triangles.iter().map(|t| t.map(vertex)).collect();
+    let edges = complex.curve_edges.iter();
+    let edges = edges.map(|e| CurveEdge::new(vertex(e.ends[0]), vertex(e.ends[1]), e.cells));
+    let own: Vec<Row> = kept.iter().map(|&k| stratification.rows[k]).collect();
+    let indices: Vec<usize> = own.iter().map(|row| row.index()).collect();
     Mesh::new(
-        Complex::new(kept.len(), triangles, edges)?,
-        places.select(&landmark_rows),
-        landmark_rows.iter().map(|&r| rows[r] as i64).collect(),
+        Complex::new(kept.len(), triangles, edges.collect())?,
+        places.select(&indices),
+        own.iter().map(|&row| rows[row].signed()).collect(),
     )
 }
 
@@ -52,12 +43,12 @@ pub(super) fn mesh_of(
 pub(super) fn special_points(
     mesh: &Mesh,
     stratification: &Stratification<f64>,
-    rows: &[usize],
+    rows: &Table<Row, InputRow>,
 ) -> Vec<SpecialPoint> {
     (stratification.points.iter())
         .filter_map(|p| {
             let link = p.link.clone()?;
-            let row = rows[stratification.rows[p.landmark as usize]] as i64;
+            let row = rows[stratification.rows[p.landmark]].signed();
             let vertex = mesh.point_index.iter().position(|&r| r == row)? as u32;
             Some(SpecialPoint { vertex, link })
         })
@@ -65,7 +56,11 @@ pub(super) fn special_points(
 }
 
 /// A broken law of a plug-in of the triangulation, with the row of the input instead of the landmark.
-pub(super) fn at_input_row(error: Error, landmarks: &[usize], rows: &[usize]) -> Error {
+pub(super) fn at_input_row(
+    error: Error,
+    landmarks: &Table<Landmark, Row>,
+    rows: &Table<Row, InputRow>,
+) -> Error {
     match error {
         Error::Law {
             plugin,
@@ -75,7 +70,9 @@ pub(super) fn at_input_row(error: Error, landmarks: &[usize], rows: &[usize]) ->
         } => Error::Law {
             plugin,
             law,
-            point: landmarks.get(point).map_or(point, |&row| rows[row]),
+            point: landmarks
+                .get(Landmark::new(point))
+                .map_or(point, |&row| rows[row].index()),
             detail,
         },
         other => other,
@@ -86,13 +83,13 @@ pub(super) fn at_input_row(error: Error, landmarks: &[usize], rows: &[usize]) ->
 pub(super) fn failures(
     triangulation: &Triangulation,
     stratification: &Stratification<f64>,
-    rows: &[usize],
+    rows: &Table<Row, InputRow>,
 ) -> Vec<Error> {
     triangulation
         .incomplete
         .iter()
         .map(|open| {
-            let landmark = open.landmark as usize;
+            let landmark = open.landmark;
             let on_curve = stratification.waist.strata[landmark] < 2;
             Error::Triangulation {
                 reason: if on_curve {
@@ -100,8 +97,8 @@ pub(super) fn failures(
                 } else {
                     "a star could not be closed".into()
                 },
-                landmark,
-                point: Some(rows[stratification.rows[landmark]]),
+                landmark: landmark.index(),
+                point: Some(rows[stratification.rows[landmark]].index()),
                 parameter: if on_curve {
                     "ep, eps or dl"
                 } else {

@@ -3,16 +3,17 @@
 mod making;
 mod mesh;
 mod parameters;
+mod prepared;
 mod progress;
 mod report;
 mod rows;
 mod run;
 
 pub use parameters::{Method, Parameters};
+pub(crate) use prepared::Input;
 pub use progress::Stage;
-pub use report::{Outcome, PluginNames, Report};
+pub use report::{GivenSpace, Outcome, PluginNames, Report};
 pub(crate) use rows::{distinct_points, distinct_rows};
-pub(crate) use run::Input;
 
 use crate::spaces::{Custom, Warning};
 use crosscap_algorithms::certificate::Limits;

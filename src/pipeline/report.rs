@@ -1,7 +1,6 @@
 //! What a reconstruction yields.
 
 use super::{Parameters, Stage};
-use crate::given::GivenSpace;
 use crate::spaces::Warning;
 use crate::watched::Distortion;
 use crosscap_algorithms::certificate::{Certificate, SpecialPoint, Verdict};
@@ -11,6 +10,19 @@ use crosscap_algorithms::stratify::{ModelCounts, StratifyCounts, Tuning};
 use crosscap_backends::geodesic::GraphReport;
 use crosscap_core::{Error, Mesh, TriangulationCounts};
 use serde::Serialize;
+
+/// What became of distances that were the only input.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct GivenSpace {
+    /// Dimension of the places.
+    pub dimension: usize,
+    /// Largest difference of a known distance and that of the places, unit of the data.
+    pub deviation: f64,
+    /// Whether the places are as good as coordinates: the deviation is at most a hundredth of dl.
+    /// Otherwise they are a picture, and no distance was taken from them.
+    pub exact: bool,
+}
 
 /// Names of the plug-ins of a reconstruction, as they call themselves.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]

@@ -1,14 +1,30 @@
 //! Which rows of the input are worked on: copies of a place say nothing.
 
 use crosscap_algorithms::certificate::{Certificate, Place, ViolationKind};
-use crosscap_core::{Error, PointCloud};
+use crosscap_core::{Error, PointCloud, Row, Table};
+
+/// A row of the input, copies counted. A [`Row`] is one of those that are worked on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct InputRow(usize);
+
+impl InputRow {
+    /// The number of the row.
+    pub(super) fn index(self) -> usize {
+        self.0
+    }
+
+    /// The number as meshes have it, where a vertex may stand for no row.
+    pub(super) fn signed(self) -> i64 {
+        self.0 as i64
+    }
+}
 
 /// The rows of the input that are worked on.
 pub(super) struct Rows {
     /// Their points.
     pub(super) cloud: PointCloud<f64>,
-    /// Their number in the input.
-    pub(super) kept: Vec<usize>,
+    /// Where they are in the input.
+    pub(super) kept: Table<Row, InputRow>,
     /// Rows of the input that coincide with an earlier one.
     pub(super) duplicates: usize,
 }
@@ -40,7 +56,7 @@ impl Rows {
         }
         Ok(Self {
             cloud,
-            kept,
+            kept: kept.into_iter().map(InputRow).collect(),
             duplicates,
         })
     }
@@ -53,13 +69,13 @@ impl Rows {
         &self,
         whole: &PointCloud<f64>,
         boundary: &[usize],
-    ) -> Result<Vec<usize>, Error> {
+    ) -> Result<Vec<Row>, Error> {
         boundary_rows(boundary, &self.kept, whole)
     }
 
     /// Numbers in the input of some of the kept rows.
-    pub(super) fn in_input(&self, rows: &[usize]) -> Vec<usize> {
-        rows.iter().map(|&r| self.kept[r]).collect()
+    pub(super) fn in_input(&self, rows: impl Iterator<Item = Row>) -> Vec<usize> {
+        rows.map(|row| self.kept[row].index()).collect()
     }
 
     /// The certificate with rows of the input for the points that it has seen.
@@ -70,7 +86,8 @@ impl Rows {
         let seen = violations.filter(|v| v.kind != ViolationKind::UnusedLandmarks);
         for place in seen.flat_map(|violation| &mut violation.places) {
             if let Place::Point(row) = place {
-                *row = self.kept.get(*row).copied().unwrap_or(*row);
+                let named = self.kept.get(Row::new(*row));
+                *row = named.map_or(*row, |named| named.index());
             }
         }
         certificate
@@ -124,16 +141,16 @@ pub(crate) fn distinct_points(cloud: &PointCloud<f64>) -> PointCloud<f64> {
 /// Positions of the boundary rows, or of the rows that they are copies of, among the kept ones.
 fn boundary_rows(
     boundary: &[usize],
-    rows: &[usize],
+    kept: &Table<Row, InputRow>,
     cloud: &PointCloud<f64>,
-) -> Result<Vec<usize>, Error> {
+) -> Result<Vec<Row>, Error> {
     let mut out = Vec::with_capacity(boundary.len());
-    let mut by_place: Vec<usize> = if boundary.is_empty() {
+    let mut by_place: Vec<Row> = if boundary.is_empty() {
         Vec::new()
     } else {
-        (0..rows.len()).collect()
+        kept.ids().collect()
     };
-    by_place.sort_by(|&a, &b| order_of_places(cloud, rows[a], rows[b]));
+    by_place.sort_by(|&a, &b| order_of_places(cloud, kept[a], kept[b]));
     for &row in boundary {
         if row >= cloud.len() {
             return Err(Error::Index {
@@ -142,7 +159,7 @@ fn boundary_rows(
                 limit: cloud.len(),
             });
         }
-        let at = by_place.binary_search_by(|&k| order_of_places(cloud, rows[k], row));
+        let at = by_place.binary_search_by(|&k| order_of_places(cloud, kept[k], InputRow(row)));
         out.extend(at.ok().map(|at| by_place[at]));
     }
     out.sort_unstable();
@@ -151,8 +168,8 @@ fn boundary_rows(
 }
 
 /// Lexicographic order of the coordinates of two rows; negative and positive zero are equal.
-fn order_of_places(cloud: &PointCloud<f64>, a: usize, b: usize) -> std::cmp::Ordering {
-    let pairs = cloud.point(a).iter().zip(cloud.point(b));
+fn order_of_places(cloud: &PointCloud<f64>, a: InputRow, b: InputRow) -> std::cmp::Ordering {
+    let pairs = cloud.point(a.0).iter().zip(cloud.point(b.0));
     pairs
         .map(|(x, y)| (x + 0.0).total_cmp(&(y + 0.0)))
         .find(|o| o.is_ne())

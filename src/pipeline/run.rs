@@ -2,11 +2,10 @@
 
 use super::making::{Making, Triangulated};
 use super::mesh::failures;
+use super::prepared::{Input, Prepared};
 use super::progress::Progress;
 use super::report::PluginNames;
-use super::rows::Rows;
 use super::{Outcome, Parameters, Parts, Pipeline, Report, Stage};
-use crate::engines::Engines;
 use crate::spaces::{Neighborhoods, custom, positions};
 use crate::watched::{Distortion, Watched};
 use crosscap_algorithms::certificate::Verdict;
@@ -19,23 +18,7 @@ use crosscap_algorithms::stratify::{
     Analysis, AnalysisOptions, Analyzer, ChartSpace, Ground, StratifyOptions,
 };
 use crosscap_backends::parallel::Threads;
-use crosscap_core::{DimensionEstimator, Error, LocalChart, Mesh, MetricSpace, PointCloud};
-
-/// What a reconstruction is made of.
-pub(crate) struct Input<'i> {
-    /// The points. Of distances that were given a picture, which vertices are drawn in and nothing else.
-    pub(crate) cloud: &'i PointCloud<f64>,
-    /// Distances that were given.
-    pub(crate) given: Option<Space<'i, f64>>,
-}
-
-/// A cloud ready for the stages, with what serves its metrics.
-pub(super) struct Prepared<'g> {
-    pub(super) rows: Rows,
-    boundary: Vec<usize>,
-    pub(super) engines: Engines,
-    pub(super) given: Option<Space<'g, f64>>,
-}
+use crosscap_core::{DimensionEstimator, Error, LocalChart, Mesh, Row, Table};
 
 impl Pipeline {
     pub(crate) fn run(&mut self, input: &Input<'_>) -> Result<Outcome, Error> {
@@ -107,37 +90,6 @@ impl Pipeline {
 }
 
 impl Parts {
-    /// Looks the input over, and builds what serves its metrics.
-    fn prepare<'g>(&self, input: &Input<'g>, threads: &Threads) -> Result<Prepared<'g>, Error> {
-        let customs = [&self.analysis_metric, &self.chart_metric];
-        for custom in customs.into_iter().flatten() {
-            let count = custom.metric().len();
-            if count != input.cloud.len() {
-                return Err(Error::Shape {
-                    found: format!("a metric on {count} points"),
-                    expected: format!("{}, as many as there are", input.cloud.len()),
-                });
-            }
-        }
-        // A metric knows the rows as they are, copies included; so does an oracle.
-        let copies = input.given.is_some()
-            || self.oracle.is_some()
-            || customs.iter().any(|custom| custom.is_some());
-        let rows = Rows::of(input.cloud, copies)?;
-        let Parameters {
-            boundary,
-            spaces,
-            eps,
-            ..
-        } = &self.parameters;
-        Ok(Prepared {
-            boundary: rows.positions(input.cloud, boundary)?,
-            engines: Engines::new(spaces, *eps, &rows.cloud, threads)?,
-            rows,
-            given: input.given,
-        })
-    }
-
     /// The space of the analysis.
     fn space<'g>(&'g self, prepared: &'g Prepared<'_>) -> Space<'g, f64> {
         let space = match (prepared.given, &self.analysis_metric) {
@@ -264,7 +216,7 @@ fn radii(
     space: &Space<'_, f64>,
     estimator: &dyn DimensionEstimator<Scalar = f64>,
     threads: &Threads,
-) -> Result<Option<Vec<f64>>, Error> {
+) -> Result<Option<Table<Row, f64>>, Error> {
     let around = Surroundings {
         oracle: space.oracle(),
         metric: space.metric(),
@@ -272,7 +224,8 @@ fn radii(
         execute: threads,
     };
     let of = |policy: &dyn NeighborhoodPolicy<f64>| {
-        Ok(Some(PolicyOracle::new(policy, &around)?.into_radii()))
+        let radii = PolicyOracle::new(policy, &around)?.into_radii();
+        Ok(Some(radii.into()))
     };
     match parameters.spaces.neighborhoods {
         // Nothing is looked for in neighborhoods.

@@ -1,8 +1,10 @@
 //! What to do about it.
 
-use super::fault::{Fault, FaultKind};
+use super::fault::Fault;
+use super::kind::FaultKind;
 use crate::auto::Topology;
 use crate::pipeline::{Outcome, Parameters};
+use crosscap_algorithms::singularity::ModelName;
 use crosscap_core::Error;
 use serde::Serialize;
 use std::fmt;
@@ -32,32 +34,60 @@ pub enum Advice {
     },
     /// Tell where the surface ends.
     Boundary,
+    /// Landmarks so near to each other that what the points leave apart stays apart.
+    CloserLandmarks {
+        /// Their separation, unit of the data.
+        dl: f64,
+    },
     /// More points where sheets meet, or a model of one's own.
     Model,
+    /// All models, where not all were asked.
+    AllModels,
     /// More attempts.
     MoreTries,
 }
 
+/// Part of the separation that would do at most: landmarks lie as chance has it.
+const ROOMY: f64 = 0.9;
+/// Landmarks are at least so many spacings of the points apart.
+const CLOSEST: f64 = 1.3;
 /// How many times as many points are asked for at least.
 const LEAST_INCREASE: f64 = 1.5;
 
 impl Advice {
-    /// What to do about faults, by the one of most places.
-    pub(super) fn on(faults: &[Fault], outcome: &Result<Outcome, Error>) -> Self {
+    /// What to do about faults, by the one of most places. On so many `points`, where they are known, the parameters of `tried`
+    /// were tried, and the faults are those of the `chosen` ones.
+    pub(super) fn on(
+        faults: &[Fault],
+        outcome: &Result<Outcome, Error>,
+        points: Option<usize>,
+        tried: &[&Parameters],
+        chosen: usize,
+    ) -> Self {
         let report = outcome.as_ref().ok().map(|outcome| &outcome.report);
+        let parameters = tried.get(chosen).copied();
+        let parameters = parameters.or(report.map(|report| &report.parameters));
         let Some(first) = faults.first() else {
             return Self::MoreTries;
         };
         let more = |times: f64| {
-            let points = report.map_or(0, |report| report.points) as f64;
-            Self::MorePoints((points * times.max(LEAST_INCREASE)) as usize)
+            let count = points.or(report.map(|report| report.points));
+            Self::MorePoints((count.unwrap_or(0) as f64 * times.max(LEAST_INCREASE)) as usize)
         };
+        let meets = matches!(first.kind, FaultKind::Unclaimed | FaultKind::Dimension);
+        // What is so nearly everywhere is no place where sheets meet.
+        let local = points.is_none_or(|points| 2 * first.count < points);
+        let mut runs = tried.iter().copied().chain(parameters).peekable();
+        let asked_all = runs.peek().is_none() || runs.any(|run| run.models == ModelName::AUTO);
+        if meets && local && !asked_all {
+            return Self::AllModels;
+        }
         match first.kind {
             FaultKind::Curvature | FaultKind::TooFewPoints => more(first.measure.unwrap_or(2.0)),
             FaultKind::TwoReadings => more(2.0),
             FaultKind::Precision => Self::MoreDigits,
             FaultKind::Noise => Self::LessNoise {
-                dl: report.map(|report| report.parameters.dl),
+                dl: parameters.map(|run| run.dl),
             },
             FaultKind::Dimension => Self::FewerDimensions,
             FaultKind::Unclaimed => Self::Model,
@@ -65,9 +95,26 @@ impl Advice {
                 rows: first.worst.iter().filter_map(|spot| spot.row).collect(),
             },
             FaultKind::Ends => Self::Boundary,
+            FaultKind::Gap | FaultKind::Merged => match apart(outcome) {
+                Some((dl, spacing)) if dl > CLOSEST * spacing => Self::CloserLandmarks { dl },
+                Some((dl, spacing)) => more((wanted(first.kind) * spacing / dl).powi(2)),
+                None => more(2.0),
+            },
             FaultKind::Unresolved | FaultKind::Unconfirmed => Self::MoreTries,
         }
     }
+}
+
+/// Spacings of the points that landmarks are apart where the program chooses them; more where neighborhoods, which are twice as
+/// wide, have to be within the distance of two sheets.
+fn wanted(kind: FaultKind) -> f64 {
+    if kind == FaultKind::Merged { 5.0 } else { 2.5 }
+}
+
+/// The landmark separation that keeps apart what the points leave apart, and their spacing.
+fn apart(outcome: &Result<Outcome, Error>) -> Option<(f64, f64)> {
+    let faithful = outcome.as_ref().ok()?.certificate.faithful.as_ref()?;
+    Some((ROOMY * faithful.separation_needed?, faithful.spacing[1]))
 }
 
 impl fmt::Display for Advice {
@@ -97,11 +144,20 @@ impl fmt::Display for Advice {
             ),
             Self::LeaveOut { rows } => {
                 let rows: Vec<String> = rows.iter().map(usize::to_string).collect();
-                write!(f, "leave out points that lie by themselves (row {})", rows.join(", "))
+                write!(
+                    f,
+                    "leave out points that lie by themselves (row {}), or let that be done (--prepare yes)",
+                    rows.join(", ")
+                )
             }
             Self::Boundary => {
                 f.write_str("say where the surface ends (--boundary), or let it be found (--models auto)")
             }
+            Self::CloserLandmarks { dl } => write!(
+                f,
+                "give a landmark separation of {dl:.3e} (--dl), so that what the points leave apart stays apart"
+            ),
+            Self::AllModels => f.write_str("let all models compete (--models auto)"),
             Self::Model => f.write_str(
                 "sample more densely where sheets meet; a pinch point or another kind of singularity needs a model of its own",
             ),

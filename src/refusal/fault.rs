@@ -1,5 +1,6 @@
 //! What went wrong, by kind.
 
+use super::kind::FaultKind;
 use super::places::{Trouble, troubles};
 use super::surroundings::{Look, Surroundings};
 use crate::auto::Doubt;
@@ -8,35 +9,6 @@ use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::{Error, PointCloud};
 use serde::Serialize;
 use std::fmt;
-
-/// What can be wrong with a cloud, or with what it was asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum FaultKind {
-    /// The surface bends more than its points can follow.
-    Curvature,
-    /// Points scatter across the surface.
-    Noise,
-    /// Points fill a space of more than two dimensions.
-    Dimension,
-    /// Sheets meet in a way that no model claims: a pinch point, more sheets than any model has.
-    Unclaimed,
-    /// Neighborhoods hold too few points.
-    TooFewPoints,
-    /// Points that no part of the surface is near.
-    Outliers,
-    /// The points can be read in two ways.
-    TwoReadings,
-    /// One attempt passed after others had failed, and no other one confirmed it.
-    Unconfirmed,
-    /// The surface ends where nothing was found that ends.
-    Ends,
-    /// Coordinates are rounded to a step that is not small against the spacing of the points.
-    Precision,
-    /// Nothing is seen in the points themselves: the landmarks or the charts failed.
-    Unresolved,
-}
 
 /// A place in the data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -74,7 +46,7 @@ impl Fault {
     pub const ROWS: usize = 60;
 }
 
-/// The faults of an outcome that is not handed over, those of most places first.
+/// The faults of an outcome that is not handed over: those with a known cause first, and of these those of most places.
 pub(super) fn faults(
     outcome: &Result<Outcome, Error>,
     doubt: Option<&Doubt>,
@@ -112,9 +84,11 @@ pub(super) fn faults(
             }
         }
     }
+    // A star that stays open says nothing where something else says why.
     faults.sort_by_key(|fault| {
         (
             !fault.kind.is_of_the_whole(),
+            fault.kind == FaultKind::Unresolved,
             std::cmp::Reverse(fault.count),
         )
     });
@@ -128,7 +102,10 @@ fn judged(trouble: &Trouble, oracle: Option<&EuclideanOracle<f64>>) -> Fault {
         .zip(oracle)
         .and_then(|(row, oracle)| Surroundings::of(oracle, row));
     let (kind, measure) = match (trouble.kind, around.map(|a| (a, a.look()))) {
-        (Some(FaultKind::TooFewPoints), _) => (FaultKind::TooFewPoints, trouble.measure),
+        (Some(kind @ (FaultKind::TooFewPoints | FaultKind::Gap | FaultKind::Merged)), _) => {
+            (kind, trouble.measure)
+        }
+        (_, Some((_, Look::Alone))) => (FaultKind::Outliers, trouble.measure),
         (_, Some((a, Look::Bent))) => (FaultKind::Curvature, Some(a.wanted())),
         (_, Some((a, Look::Noisy))) => (FaultKind::Noise, Some(a.thickness / a.spacing)),
         (_, Some((a, Look::Solid))) => (FaultKind::Dimension, Some(a.growth)),
@@ -150,35 +127,6 @@ fn judged(trouble: &Trouble, oracle: Option<&EuclideanOracle<f64>>) -> Fault {
         measure,
         detail: trouble.detail.clone(),
         rows: trouble.row.into_iter().collect(),
-    }
-}
-
-impl FaultKind {
-    /// Whether it speaks of all points together, and not of a place.
-    fn is_of_the_whole(self) -> bool {
-        matches!(
-            self,
-            Self::TwoReadings | Self::Unconfirmed | Self::Precision
-        )
-    }
-
-    /// What it is, in a few words.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            Self::Curvature => "the surface bends more than its points can follow",
-            Self::Noise => "points scatter across the surface",
-            Self::Dimension => "the points fill a space of more than two dimensions",
-            Self::Unclaimed => "sheets meet in a way that no model claims",
-            Self::TooFewPoints => "too few points",
-            Self::Outliers => "points that no part of the surface is near",
-            Self::TwoReadings => "the points do not decide",
-            Self::Unconfirmed => "what was found was not found again",
-            Self::Ends => "the mesh ends where nothing was found that ends",
-            Self::Precision => {
-                "coordinates are rounded to a step that is not small against the spacing"
-            }
-            Self::Unresolved => "landmarks or charts failed where the points look sound",
-        }
     }
 }
 

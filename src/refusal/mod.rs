@@ -7,15 +7,20 @@
 
 mod advice;
 mod fault;
+mod kind;
 mod places;
 mod surroundings;
 
+#[cfg(test)]
+mod tests;
+
 pub use advice::Advice;
-pub use fault::{Fault, FaultKind, Spot};
+pub use fault::{Fault, Spot};
+pub use kind::FaultKind;
 pub use surroundings::Surroundings;
 
 use crate::auto::{Attempt, Doubt, Search};
-use crate::pipeline::Outcome;
+use crate::pipeline::{Outcome, Parameters};
 use crosscap_core::{Error, Mesh, PointCloud};
 use std::fmt;
 
@@ -23,7 +28,7 @@ use std::fmt;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Refusal {
-    /// What went wrong, one entry a kind, those of most places first.
+    /// What went wrong, one entry a kind: those with a known cause first, and of these those of most places.
     pub faults: Vec<Fault>,
     /// The best thing to do.
     pub advice: Advice,
@@ -40,11 +45,29 @@ impl Refusal {
         doubt: Option<&Doubt>,
         points: Option<&PointCloud<f64>>,
     ) -> Self {
+        Self::after(Vec::new(), 0, outcome, doubt, points)
+    }
+
+    /// The refusal of attempts, of which the `chosen` one gave this outcome.
+    fn after(
+        attempts: Vec<Attempt>,
+        chosen: usize,
+        outcome: Result<Outcome, Error>,
+        doubt: Option<&Doubt>,
+        points: Option<&PointCloud<f64>>,
+    ) -> Self {
         let faults = fault::faults(&outcome, doubt, points);
+        let tried: Vec<&Parameters> = attempts.iter().map(|a| &a.parameters).collect();
         Self {
-            advice: Advice::on(&faults, &outcome),
+            advice: Advice::on(
+                &faults,
+                &outcome,
+                points.map(PointCloud::len),
+                &tried,
+                chosen,
+            ),
             faults,
-            attempts: Vec::new(),
+            attempts,
             outcome,
         }
     }
@@ -100,10 +123,11 @@ impl Search {
         let verified = self.is_verified();
         match self.outcome {
             Ok(outcome) if verified => Ok(outcome),
-            outcome => Err(Box::new(Refusal {
-                attempts: self.attempts,
-                ..Refusal::of(outcome, self.doubt.as_ref(), points)
-            })),
+            outcome => {
+                let doubt = self.doubt.as_ref();
+                let refusal = Refusal::after(self.attempts, self.chosen, outcome, doubt, points);
+                Err(Box::new(refusal))
+            }
         }
     }
 }

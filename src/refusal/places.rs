@@ -1,6 +1,6 @@
 //! Where a reconstruction failed, gathered from its stages.
 
-use super::fault::FaultKind;
+use super::kind::FaultKind;
 use crate::pipeline::Outcome;
 use crosscap_algorithms::certificate::{Place, Violation, ViolationKind};
 use crosscap_core::{Error, Mesh};
@@ -50,7 +50,7 @@ fn of_error(error: &Error) -> Trouble {
             needed,
             ..
         } => {
-            let wanted = *needed as f64 / (*found).max(1) as f64;
+            let wanted = enough(*needed as f64) / (*found).max(1) as f64;
             (Some(*point), Some(FaultKind::TooFewPoints), Some(wanted), 1)
         }
         Error::Dimension { point, count, .. } => (Some(*point), None, None, *count),
@@ -71,6 +71,12 @@ fn of_error(error: &Error) -> Trouble {
     }
 }
 
+/// Points that a neighborhood holds in the mean so that all of many hold as many as are `needed`: four standard deviations
+/// more.
+fn enough(needed: f64) -> f64 {
+    (2.0 + (4.0 + needed).sqrt()).powi(2)
+}
+
 /// One trouble for each place of a violation that is listed; the first stands for those that are not.
 fn of_violation<'a>(
     violation: &'a Violation,
@@ -86,7 +92,15 @@ fn of_violation<'a>(
         ViolationKind::InadmissibleLink | ViolationKind::SplitLink | ViolationKind::Pinch => {
             Some(FaultKind::Unclaimed)
         }
+        ViolationKind::BridgedGap | ViolationKind::BareStretch => Some(FaultKind::Gap),
+        ViolationKind::MergedSheets => Some(FaultKind::Merged),
         _ => None,
+    };
+    let told = matches!(kind, Some(FaultKind::Gap | FaultKind::Merged));
+    let detail = if told {
+        &violation.detail
+    } else {
+        violation.kind.meaning()
     };
     let unlisted = violation.count.saturating_sub(violation.places.len());
     let whole = violation.places.is_empty().then_some(None);
@@ -102,7 +116,7 @@ fn of_violation<'a>(
         kind,
         measure: None,
         count: if k == 0 { 1 + unlisted } else { 1 },
-        detail: violation.kind.meaning().into(),
+        detail: detail.into(),
     })
 }
 

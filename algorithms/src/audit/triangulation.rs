@@ -3,7 +3,7 @@
 
 use super::broken;
 use crosscap_core::{
-    Chart, ChartTriangle, CompatibilityTest, Error, LocalChart, Meeting, TriangleRule,
+    Chart, ChartTriangle, CompatibilityTest, Error, Landmark, LocalChart, Meeting, TriangleRule,
 };
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
@@ -20,8 +20,8 @@ pub(crate) struct Watch {
 
 impl Watch {
     /// The landmark whose star is closed next.
-    pub(crate) fn enter(&self, landmark: u32) {
-        self.at.store(landmark as usize, Ordering::Relaxed);
+    pub(crate) fn enter(&self, landmark: Landmark) {
+        self.at.store(landmark.index(), Ordering::Relaxed);
     }
 
     /// # Errors
@@ -156,12 +156,12 @@ const KNOWN: [([[f64; 2]; 3], [u32; 3], Meeting); 5] = [
 pub(crate) fn known_pairs(test: &dyn CompatibilityTest, size: f64) -> Result<(), Error> {
     let scaled = |places: [[f64; 2]; 3]| places.map(|p| p.map(|c| c * size));
     let a = ChartTriangle {
-        corners: [0, 1, 2],
+        corners: [0, 1, 2].map(Landmark::new),
         places: scaled([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
     };
     for (places, corners, expected) in KNOWN {
         let b = ChartTriangle {
-            corners,
+            corners: corners.map(Landmark::from),
             places: scaled(places),
         };
         let found = [test.meeting(&a, &b), test.meeting(&b, &a)];

@@ -1,34 +1,12 @@
 //! What can be asked of a mesh whose points are known by their distances alone.
 
 use super::cover::Distances;
+use super::distance_report::DistanceReport;
 use super::incidence::Incidence;
 use super::{
     Certificate, CertificateOptions, Place, Violation, ViolationKind, edges, indices, links, within,
 };
 use crosscap_core::{Mesh, MetricSpace, NeighborhoodOracle, Scalar};
-use serde::Serialize;
-
-/// Folds, needles and cover, from distances.
-///
-/// Whether triangles overlap or cross cannot be told without places, nor how far points lie off
-/// the planes of triangles.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct DistanceReport {
-    /// Smallest angle between two triangles at an ordinary edge, degrees, in the tetrahedron with the
-    /// six distances of their corners; 180 is flat.
-    pub smallest_dihedral: f64,
-    /// Ordinary edges with an angle below the limit.
-    pub folds: usize,
-    /// Smallest angle of a triangle with the three distances of its corners, degrees.
-    pub smallest_angle: f64,
-    /// Points to their nearest vertex, in dl.
-    pub points_to_vertices: Distances,
-    /// Number of landmarks that are not in the mesh.
-    pub unused_landmarks: usize,
-    /// What is wrong.
-    pub violations: Vec<Violation>,
-}
 
 /// Greatest distance of a point to the nearest vertex, in dl: landmarks leave none farther than dl.
 const POINTS_TO_VERTICES: f64 = 1.25;
@@ -75,6 +53,7 @@ pub fn certify_by_distances<S: Scalar>(
         &incidence,
         options.closed,
         options.limits.shortest_boundary,
+        &|_| false,
     ));
     certificate.links = Some(links::check(
         mesh,
@@ -150,7 +129,7 @@ fn check<S: Scalar>(
     }
     let separation = options
         .landmark_separation
-        .unwrap_or_else(|| 0.75 * super::quality::median(lengths));
+        .unwrap_or_else(|| 0.75 * super::statistics::median(lengths));
     let mut nearest = vec![f64::INFINITY; metric.len()];
     let mut near = Vec::new();
     for &row in rows {

@@ -25,11 +25,13 @@ pub struct EdgeReport {
     pub violations: Vec<Violation>,
 }
 
+/// Asks all edges; a boundary of fewer edges than `shortest_boundary` is allowed where `is_opening` says so of its vertices.
 pub(super) fn check(
     mesh: &Mesh,
     incidence: &Incidence,
     closed: bool,
     shortest_boundary: usize,
+    is_opening: &dyn Fn(&[u32]) -> bool,
 ) -> EdgeReport {
     let mut report = EdgeReport {
         edges: incidence.edges.len(),
@@ -60,11 +62,11 @@ pub(super) fn check(
         }
     }
     let parts = boundary_parts(incidence);
-    report.boundaries = parts.iter().map(|p| p.0).collect();
+    report.boundaries = parts.iter().map(|p| p.edges).collect();
     let small = parts
         .iter()
-        .filter(|p| p.0 < shortest_boundary)
-        .map(|p| Place::Edge(p.1))
+        .filter(|p| p.edges < shortest_boundary && !is_opening(&p.vertices))
+        .map(|p| Place::Edge(p.first))
         .collect();
     use ViolationKind::*;
     for (kind, places) in [
@@ -81,8 +83,17 @@ pub(super) fn check(
     report
 }
 
-/// Connected parts of the declared boundary: number of edges and first edge, shortest first.
-fn boundary_parts(incidence: &Incidence) -> Vec<(usize, [u32; 2])> {
+/// A connected part of the declared boundary.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Part {
+    /// Number of its edges.
+    edges: usize,
+    first: [u32; 2],
+    vertices: Vec<u32>,
+}
+
+/// Connected parts of the declared boundary, shortest first.
+fn boundary_parts(incidence: &Incidence) -> Vec<Part> {
     let mut ways: Vec<[u32; 2]> = incidence
         .edges
         .iter()
@@ -100,9 +111,10 @@ fn boundary_parts(incidence: &Incidence) -> Vec<(usize, [u32; 2])> {
             continue;
         }
         // every edge of the part is met once from either end
-        let mut met = 0;
+        let (mut met, mut vertices) = (0, Vec::new());
         stack.push(ways[start][0]);
         while let Some(v) = stack.pop() {
+            vertices.push(v);
             let from = ways.partition_point(|w| w[0] < v);
             for k in (from..ways.len()).take_while(|&k| ways[k][0] == v) {
                 if !seen[k] {
@@ -112,7 +124,13 @@ fn boundary_parts(incidence: &Incidence) -> Vec<(usize, [u32; 2])> {
                 }
             }
         }
-        parts.push((met / 2, ways[start]));
+        vertices.sort_unstable();
+        vertices.dedup();
+        parts.push(Part {
+            edges: met / 2,
+            first: ways[start],
+            vertices,
+        });
     }
     parts.sort_unstable();
     parts

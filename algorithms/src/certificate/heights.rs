@@ -2,7 +2,8 @@
 
 use super::distance::point_triangle;
 use super::frame::Frame;
-use super::geometry::{corners, tree};
+use super::geometry::tree;
+use super::triangle::corners;
 use crosscap_core::{Mesh, PointCloud};
 
 /// The distance of every point to the nearest place of the mesh, in the unit of the data; infinite where the mesh has

@@ -1,7 +1,7 @@
 //! First level: the arrays are those of a simplicial complex with distinct places.
 
 use super::{Place, Violation, ViolationKind};
-use crosscap_core::Mesh;
+use crosscap_core::{Complex, Mesh};
 use serde::Serialize;
 
 /// Whether the arrays describe a simplicial complex with distinct places.
@@ -65,9 +65,25 @@ pub(super) fn arrays(mesh: &Mesh, at: impl Fn(Place) -> Vec<f64>) -> IndexReport
             .push(Violation::whole(ViolationKind::NoTriangles, String::new()));
         report.usable = false;
     }
+    corners(complex, &mut report);
+    if report.usable {
+        let kinds = [
+            (ViolationKind::RepeatedTriangle, repeated_triangles(complex)),
+            (ViolationKind::RepeatedCurveEdge, repeated_edges(complex)),
+            (ViolationKind::IsolatedVertex, isolated(complex)),
+        ];
+        let found = kinds.into_iter();
+        let found = found.filter_map(|(kind, places)| Violation::at(kind, places, &at));
+        report.violations.extend(found);
+    }
+    report
+}
+
+/// Corners that are no vertices, and simplices with one corner twice: with either nothing more can be asked.
+fn corners(complex: &Complex, report: &mut IndexReport) {
     let (mut outside, mut repeated) = (vec![], vec![]);
     let mut note = |place: Place, corners: &[u32]| {
-        if corners.iter().any(|&v| v as usize >= n) {
+        if corners.iter().any(|&v| v as usize >= complex.vertices) {
             outside.push(place);
         }
         if (1..corners.len()).any(|k| corners[..k].contains(&corners[k])) {
@@ -81,72 +97,48 @@ pub(super) fn arrays(mesh: &Mesh, at: impl Fn(Place) -> Vec<f64>) -> IndexReport
         note(Place::CurveEdge(e as u32), &edge.ends);
     }
     report.usable &= outside.is_empty() && repeated.is_empty();
-    report.violations.extend(Violation::at(
-        ViolationKind::IndexOutOfRange,
-        outside,
-        |_| Vec::new(),
-    ));
-    report.violations.extend(Violation::at(
-        ViolationKind::RepeatedCorner,
-        repeated,
-        |_| Vec::new(),
-    ));
-    if !report.usable {
-        return report;
-    }
-    let mut sorted: Vec<([u32; 3], u32)> = complex
-        .triangles
-        .iter()
-        .enumerate()
-        .map(|(t, &corners)| {
-            let mut corners = corners;
-            corners.sort_unstable();
-            (corners, t as u32)
-        })
-        .collect();
-    sorted.sort_unstable();
-    let twice = sorted
-        .windows(2)
-        .filter(|w| w[0].0 == w[1].0)
-        .map(|w| Place::Triangle(w[1].1))
-        .collect();
+    let nowhere = |_: Place| Vec::new();
+    let outside = Violation::at(ViolationKind::IndexOutOfRange, outside, nowhere);
+    let repeated = Violation::at(ViolationKind::RepeatedCorner, repeated, nowhere);
     report
         .violations
-        .extend(Violation::at(ViolationKind::RepeatedTriangle, twice, &at));
-    let mut ends: Vec<([u32; 2], u32)> = complex
-        .curve_edges
-        .iter()
-        .enumerate()
-        .map(|(k, e)| {
-            (
-                [e.ends[0].min(e.ends[1]), e.ends[0].max(e.ends[1])],
-                k as u32,
-            )
-        })
-        .collect();
-    ends.sort_unstable();
-    let twice = ends
-        .windows(2)
-        .filter(|w| w[0].0 == w[1].0)
-        .map(|w| Place::CurveEdge(w[1].1))
-        .collect();
-    report
-        .violations
-        .extend(Violation::at(ViolationKind::RepeatedCurveEdge, twice, &at));
+        .extend(outside.into_iter().chain(repeated));
+}
 
-    let mut used = vec![false; n];
+/// Triangles that are there before.
+fn repeated_triangles(complex: &Complex) -> Vec<Place> {
+    let sorted = complex.triangles.iter().map(|&corners| {
+        let mut corners = corners;
+        corners.sort_unstable();
+        corners
+    });
+    repeated(sorted, Place::Triangle)
+}
+
+/// Curve edges that are there before.
+fn repeated_edges(complex: &Complex) -> Vec<Place> {
+    let ends = complex.curve_edges.iter().map(|e| e.ends);
+    let sorted = ends.map(|[a, b]| [a.min(b), a.max(b)]);
+    repeated(sorted, Place::CurveEdge)
+}
+
+/// The places of all that are equal to an earlier one.
+fn repeated<K: Ord>(all: impl Iterator<Item = K>, place: fn(u32) -> Place) -> Vec<Place> {
+    let mut sorted: Vec<(K, u32)> = all.zip(0..).collect();
+    sorted.sort_unstable();
+    let pairs = sorted.windows(2).filter(|w| w[0].0 == w[1].0);
+    pairs.map(|w| place(w[1].1)).collect()
+}
+
+/// Vertices that neither a triangle nor a curve edge has.
+fn isolated(complex: &Complex) -> Vec<Place> {
+    let mut used = vec![false; complex.vertices];
     let corners = complex.triangles.iter().flatten();
     for &v in corners.chain(complex.curve_edges.iter().flat_map(|e| &e.ends)) {
         used[v as usize] = true;
     }
-    let isolated = (0..n)
-        .filter(|&v| !used[v])
-        .map(|v| Place::Vertex(v as u32))
-        .collect();
-    report
-        .violations
-        .extend(Violation::at(ViolationKind::IsolatedVertex, isolated, &at));
-    report
+    let unused = (0..complex.vertices).filter(|&v| !used[v]);
+    unused.map(|v| Place::Vertex(v as u32)).collect()
 }
 
 /// Vertices with another one at their place, each with one partner. A sweep along a direction

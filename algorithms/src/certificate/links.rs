@@ -140,83 +140,114 @@ fn listed(found: &BTreeMap<String, usize>) -> String {
     words.join("; ")
 }
 
+/// What the links of all vertices show.
+#[derive(Default)]
+struct Findings {
+    census: BTreeMap<LinkKind, usize>,
+    bad: Vec<Place>,
+    split: Vec<Place>,
+    pinched: Vec<Place>,
+    /// Declared points whose link is another one.
+    undone: Vec<Place>,
+    /// Links that no model explained, in words.
+    unexplained: BTreeMap<String, usize>,
+    /// Links in place of those that were declared.
+    otherwise: BTreeMap<String, usize>,
+}
+
+impl Findings {
+    /// Looks at the link about a vertex, which was declared to be `wanted`, or else is of one of the kinds that are
+    /// `admissible`.
+    fn look(
+        &mut self,
+        v: u32,
+        around: &mut Around,
+        wanted: Option<&Link>,
+        admissible: &[LinkKind],
+    ) {
+        let (kind, place) = (around.kind(), Place::Vertex(v));
+        *self.census.entry(kind).or_default() += 1;
+        if let Some(wanted) = wanted {
+            let link = around.link();
+            if wanted.without_creases() != link {
+                let told = format!("{link} instead of {wanted}");
+                *self.otherwise.entry(told).or_default() += 1;
+                self.undone.push(place);
+            }
+        } else if !admissible.contains(&kind) {
+            let told = in_words(&around.link());
+            *self.unexplained.entry(told).or_default() += 1;
+            match kind {
+                LinkKind::Pinch => self.pinched.push(place),
+                LinkKind::Split | LinkKind::IsolatedCrossing => self.split.push(place),
+                _ => self.bad.push(place),
+            }
+        }
+    }
+
+    fn report(self, mesh: &Mesh) -> LinkReport {
+        let at = |p: Place| super::coordinates(mesh, p);
+        let found = listed(&self.unexplained);
+        let kinds = [
+            (ViolationKind::InadmissibleLink, self.bad, found.clone()),
+            (ViolationKind::SplitLink, self.split, found.clone()),
+            (ViolationKind::Pinch, self.pinched, found),
+            (
+                ViolationKind::SpecialPoint,
+                self.undone,
+                listed(&self.otherwise),
+            ),
+        ];
+        let violations = kinds.into_iter().filter_map(|(kind, places, detail)| {
+            Violation::at(kind, places, at).map(|v| v.detailed(detail))
+        });
+        LinkReport {
+            violations: violations.collect(),
+            census: self.census,
+        }
+    }
+}
+
+/// Reads the link of every vertex.
 pub(super) fn check(
     mesh: &Mesh,
     incidence: &Incidence,
     admissible: &[LinkKind],
     special: &[SpecialPoint],
 ) -> LinkReport {
-    let n = mesh.complex.vertices;
-    // neighbors along curve edges, sorted by vertex
-    let mut along: Vec<(u32, u32)> = mesh
-        .complex
-        .curve_edges
-        .iter()
+    // Neighbors along curve edges, sorted by vertex.
+    let edges = mesh.complex.curve_edges.iter();
+    let mut along: Vec<(u32, u32)> = edges
         .flat_map(|e| [(e.ends[0], e.ends[1]), (e.ends[1], e.ends[0])])
         .collect();
     along.sort_unstable();
     let mut declared: Vec<(u32, &Link)> = special.iter().map(|s| (s.vertex, &s.link)).collect();
     declared.sort_unstable();
-    let mut report = LinkReport::default();
-    let (mut bad, mut split, mut pinched, mut undone) = (vec![], vec![], vec![], vec![]);
-    let mut unexplained: BTreeMap<String, usize> = BTreeMap::new();
-    let mut otherwise: BTreeMap<String, usize> = BTreeMap::new();
+    let mut findings = Findings::default();
     let mut around = Around::default();
     let (mut neighbors, mut next, mut next_declared) = (Vec::new(), 0, 0);
-    for v in 0..n as u32 {
+    for v in 0..mesh.complex.vertices as u32 {
         neighbors.clear();
         while next < along.len() && along[next].0 == v {
             neighbors.push(along[next].1);
             next += 1;
         }
-        let triangles = incidence.at_vertex(v as usize);
         let mut wanted = None;
         while next_declared < declared.len() && declared[next_declared].0 == v {
             wanted = Some(declared[next_declared].1);
             next_declared += 1;
         }
-        if triangles.is_empty() && neighbors.is_empty() {
-            if wanted.is_some() {
-                undone.push(Place::Vertex(v));
-            }
-            continue;
-        }
-        around.read(mesh, triangles, v, &neighbors);
-        let kind = around.kind();
-        *report.census.entry(kind).or_default() += 1;
-        let place = Place::Vertex(v);
-        if let Some(wanted) = wanted {
-            let link = around.link();
-            if wanted.without_creases() != link {
-                *otherwise
-                    .entry(format!("{link} instead of {wanted}"))
-                    .or_default() += 1;
-                undone.push(place);
-            }
-        } else if !admissible.contains(&kind) {
-            *unexplained.entry(in_words(&around.link())).or_default() += 1;
-            match kind {
-                LinkKind::Pinch => pinched.push(place),
-                LinkKind::Split | LinkKind::IsolatedCrossing => split.push(place),
-                _ => bad.push(place),
-            }
+        let triangles = incidence.at_vertex(v as usize);
+        if !triangles.is_empty() || !neighbors.is_empty() {
+            around.read(mesh, triangles, v, &neighbors);
+            findings.look(v, &mut around, wanted, admissible);
+        } else if wanted.is_some() {
+            findings.undone.push(Place::Vertex(v));
         }
     }
-    undone.extend(declared[next_declared..].iter().map(|d| Place::Vertex(d.0)));
-    let at = |p: Place| super::coordinates(mesh, p);
-    let found = listed(&unexplained);
-    for (kind, places, detail) in [
-        (ViolationKind::InadmissibleLink, bad, &found),
-        (ViolationKind::SplitLink, split, &found),
-        (ViolationKind::Pinch, pinched, &found),
-        (ViolationKind::SpecialPoint, undone, &listed(&otherwise)),
-    ] {
-        let violation = Violation::at(kind, places, at);
-        report
-            .violations
-            .extend(violation.map(|v| v.detailed(detail.clone())));
-    }
-    report
+    let beyond = declared[next_declared..].iter();
+    findings.undone.extend(beyond.map(|d| Place::Vertex(d.0)));
+    findings.report(mesh)
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Sixth level: shapes of triangles and the pieces they make.
 
-use super::geometry::{area, corners};
 use super::incidence::Incidence;
+pub(super) use super::statistics::{median, quantile};
+use super::triangle::{area, corners};
 use super::{Limits, Place, Violation, ViolationKind, within};
 use crosscap_core::Mesh;
 use serde::Serialize;
@@ -32,23 +33,6 @@ impl Spread {
             max: quantile(&values, 1.0),
         }
     }
-}
-
-/// Quantile of sorted values, linear between two of them; 0 of none.
-pub(super) fn quantile(sorted: &[f64], q: f64) -> f64 {
-    if sorted.is_empty() {
-        return 0.0;
-    }
-    let place = q * (sorted.len() - 1) as f64;
-    let (below, part) = (place.floor() as usize, place.fract());
-    let above = (below + 1).min(sorted.len() - 1);
-    sorted[below] * (1.0 - part) + sorted[above] * part
-}
-
-/// Median, the mean of the middle two for an even number.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    quantile(&values, 0.5)
 }
 
 /// A part of the mesh that hangs together over ordinary edges: a cell.
@@ -163,30 +147,51 @@ fn runs(corners: [u32; 3], [a, b]: [u32; 2]) -> bool {
     (0..3).any(|k| corners[k] == a && corners[(k + 1) % 3] == b)
 }
 
+/// Shapes of all triangles, and what they hang together in.
 pub(super) fn check(mesh: &Mesh, incidence: &Incidence, limits: &Limits) -> QualityReport {
-    let triangles = &mesh.complex.triangles;
-    let (mut angles, mut ratios) = (Vec::new(), Vec::new());
-    let mut areas = Vec::new();
-    for t in 0..triangles.len() as u32 {
+    let count = mesh.complex.triangles.len();
+    let (mut angles, mut ratios) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    let mut areas = Vec::with_capacity(count);
+    for t in 0..count as u32 {
         let (angle, ratio, area) = shape(corners(mesh, t));
         angles.push(angle);
         ratios.push(ratio);
         areas.push(area);
     }
-    let needles: Vec<Place> = (0..triangles.len())
+    let needles: Vec<Place> = (0..count)
         .filter(|&t| !within(limits.min_angle, angles[t]))
         .map(|t| Place::Triangle(t as u32))
         .collect();
-    let lengths = incidence
-        .edges
-        .iter()
-        .map(|e| {
-            mesh.vertices
-                .squared_distance(e[0] as usize, e[1] as usize)
-                .sqrt()
-        })
-        .collect();
+    let edges = incidence.edges.iter();
+    let squares = edges.map(|e| mesh.vertices.squared_distance(e[0] as usize, e[1] as usize));
+    let lengths = squares.map(f64::sqrt).collect();
+    let mut parts = SignedSets::new(mesh.complex.vertices);
+    for &[a, b] in &incidence.edges {
+        parts.join(a, b, false);
+    }
+    let components = (0..mesh.complex.vertices as u32)
+        .filter(|&v| parts.root(v).0 == v)
+        .count();
+    let min_angle = Spread::of(angles);
+    let at = |p: Place| super::coordinates(mesh, p);
+    let needles = Violation::at(ViolationKind::NeedleTriangle, needles, at);
+    QualityReport {
+        violations: needles
+            .map(|v| v.measured(min_angle.min, limits.min_angle))
+            .into_iter()
+            .collect(),
+        min_angle,
+        radius_ratio: Spread::of(ratios),
+        edge_length: Spread::of(lengths),
+        area: areas.iter().sum(),
+        components,
+        cells: cells(mesh, incidence, &areas),
+    }
+}
 
+/// The parts that hang together over ordinary edges.
+fn cells(mesh: &Mesh, incidence: &Incidence, areas: &[f64]) -> Vec<Cell> {
+    let triangles = &mesh.complex.triangles;
     let mut sets = SignedSets::new(triangles.len());
     let mut twisted = Vec::new();
     for (e, &ends) in incidence.edges.iter().enumerate() {
@@ -199,51 +204,28 @@ pub(super) fn check(mesh: &Mesh, incidence: &Incidence, limits: &Limits) -> Qual
         }
     }
     let mut cells: Vec<Cell> = Vec::new();
-    let mut cell_of = vec![u32::MAX; triangles.len()];
-    for t in 0..triangles.len() as u32 {
-        let root = sets.root(t).0 as usize;
+    let mut cell_of: Vec<Option<usize>> = vec![None; triangles.len()];
+    for (t, area) in (0..).zip(areas) {
         // roots are the smallest members
-        if cell_of[root] == u32::MAX {
-            cell_of[root] = cells.len() as u32;
+        let root = sets.root(t).0 as usize;
+        let own = *cell_of[root].get_or_insert_with(|| {
             cells.push(Cell {
                 first: t,
                 triangles: 0,
                 orientable: true,
                 area: 0.0,
             });
-        }
-        let cell = &mut cells[cell_of[root] as usize];
-        cell.triangles += 1;
-        cell.area += areas[t as usize];
+            cells.len() - 1
+        });
+        cells[own].triangles += 1;
+        cells[own].area += area;
     }
     for t in twisted {
-        let root = sets.root(t).0 as usize;
-        cells[cell_of[root] as usize].orientable = false;
+        if let Some(own) = cell_of[sets.root(t).0 as usize] {
+            cells[own].orientable = false;
+        }
     }
-
-    let mut parts = SignedSets::new(mesh.complex.vertices);
-    for &[a, b] in &incidence.edges {
-        parts.join(a, b, false);
-    }
-    let components = (0..mesh.complex.vertices as u32)
-        .filter(|&v| parts.root(v).0 == v)
-        .count();
-
-    let min_angle = Spread::of(angles);
-    QualityReport {
-        violations: Violation::at(ViolationKind::NeedleTriangle, needles, |p| {
-            super::coordinates(mesh, p)
-        })
-        .map(|v| v.measured(min_angle.min, limits.min_angle))
-        .into_iter()
-        .collect(),
-        min_angle,
-        radius_ratio: Spread::of(ratios),
-        edge_length: Spread::of(lengths),
-        area: areas.iter().sum(),
-        components,
-        cells,
-    }
+    cells
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Triangles of R^N that lie on top of each other.
 
-use super::geometry::corners;
+use super::triangle::corners;
 use crosscap_core::Mesh;
 
 /// Every triangle's plane, as two orthonormal directions.

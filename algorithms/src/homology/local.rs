@@ -93,92 +93,21 @@ pub fn local_homology<O: NeighborhoodOracle>(
             expected: format!("{count}, the vertices"),
         });
     }
-    let edges = complex.edges();
-    // Both lists are sorted: the simplices whose first corner is v are consecutive.
-    let first_triangle = starts(count, complex.triangles.iter().map(|t| t[0]));
-    let first_edge = starts(count, edges.iter().map(|e| e[0]));
-    struct Scratch<S: Scalar> {
-        neighbors: Vec<Neighbor<S>>,
-        /// Number of a vertex in the neighborhood, [`OUTSIDE`] for the others.
-        number: Vec<u32>,
-        members: Vec<u32>,
-    }
-    const OUTSIDE: u32 = u32::MAX;
-    let scratch = || Scratch {
-        neighbors: Vec::new(),
-        number: vec![OUTSIDE; count],
-        members: Vec::new(),
-    };
-    let found = map(execute, count, scratch, |scratch, center| {
-        oracle.within(center, radius, &mut scratch.neighbors);
-        let Scratch {
-            neighbors,
-            number,
-            members,
-        } = scratch;
-        members.clear();
-        members.extend(neighbors.iter().map(|n| n.index as u32));
-        members.sort_unstable();
-        for (k, &v) in members.iter().enumerate() {
-            number[v as usize] = k as u32;
-        }
-        let (mut triangles, mut inside) = (Vec::new(), Vec::new());
-        for &v in members.iter() {
-            let at = |starts: &[usize]| starts[v as usize]..starts[v as usize + 1];
-            for t in &complex.triangles[at(&first_triangle)] {
-                let t = t.map(|v| number[v as usize]);
-                if t.iter().all(|&k| k != OUTSIDE) {
-                    triangles.push(t);
-                }
-            }
-            for &[_, b] in &edges[at(&first_edge)] {
-                if number[b as usize] != OUTSIDE {
-                    inside.push(CurveEdge::new(number[v as usize], number[b as usize], 0));
-                }
-            }
-        }
-        for &v in members.iter() {
-            number[v as usize] = OUTSIDE;
-        }
-        // The part that hangs together with the center, its vertices numbered anew in their order.
-        let mut parts = UnionFind::<u32>::new(members.len());
-        for e in &inside {
-            parts.union(e.ends[0], e.ends[1]);
-        }
-        let Ok(own) = members.binary_search(&(center as u32)) else {
-            return Err(Error::Law {
+    let balls = Balls::new(complex);
+    let found = map(
+        execute,
+        count,
+        || Scratch::new(count),
+        |scratch, center| {
+            oracle.within(center, radius, &mut scratch.neighbors);
+            balls.about(center, scratch)?.ok_or_else(|| Error::Law {
                 plugin: "neighborhood oracle".into(),
                 law: "the center is in its neighborhood",
                 point: center,
                 detail: format!("not within {} of itself", radius.as_f64()),
-            });
-        };
-        let own = parts.find(own as u32);
-        let mut names = vec![OUTSIDE; members.len()];
-        let mut size = 0;
-        for k in 0..members.len() as u32 {
-            if parts.find(k) == own {
-                names[k as usize] = size;
-                size += 1;
-            }
-        }
-        let here = |k: u32| names[k as usize] != OUTSIDE;
-        triangles.retain(|t: &[u32; 3]| here(t[0]));
-        inside.retain(|e: &CurveEdge| here(e.ends[0]));
-        let named = |k: u32| names[k as usize];
-        let triangles = triangles.iter().map(|t| t.map(named)).collect();
-        let inside = inside
-            .iter()
-            .map(|e| CurveEdge::new(named(e.ends[0]), named(e.ends[1]), 0));
-        let local = Complex::new(size as usize, triangles, inside.collect())?;
-        let h = homology(&local)?;
-        Ok(Found {
-            members: size as usize,
-            others: (size as usize) < members.len(),
-            betti_rational: h.betti_rational,
-            betti_mod2: h.betti_mod2,
-        })
-    });
+            })
+        },
+    );
     let found: Vec<Found> = found.into_iter().collect::<Result<_, Error>>()?;
     let mut sizes: Vec<usize> = found.iter().map(|f| f.members).collect();
     sizes.sort_unstable();
@@ -207,6 +136,136 @@ struct Found {
     others: bool,
     betti_rational: [usize; 3],
     betti_mod2: [usize; 3],
+}
+
+/// No number: of a vertex outside of a ball.
+const OUTSIDE: u32 = u32::MAX;
+
+/// Buffers of one thread.
+struct Scratch<S: Scalar> {
+    neighbors: Vec<Neighbor<S>>,
+    /// Number of a vertex in the ball, [`OUTSIDE`] for the others.
+    number: Vec<u32>,
+    members: Vec<u32>,
+}
+
+impl<S: Scalar> Scratch<S> {
+    fn new(vertices: usize) -> Self {
+        Self {
+            neighbors: Vec::new(),
+            number: vec![OUTSIDE; vertices],
+            members: Vec::new(),
+        }
+    }
+}
+
+/// The triangles and edges of a complex by their first corner.
+struct Balls<'c> {
+    complex: &'c Complex,
+    edges: Vec<[u32; 2]>,
+    first_triangle: Vec<usize>,
+    first_edge: Vec<usize>,
+}
+
+/// What the vertices in a ball span, by their numbers in it.
+struct Spanned {
+    triangles: Vec<[u32; 3]>,
+    edges: Vec<[u32; 2]>,
+}
+
+impl<'c> Balls<'c> {
+    fn new(complex: &'c Complex) -> Self {
+        let (count, edges) = (complex.vertices, complex.edges());
+        // Both lists are sorted: the simplices whose first corner is v are consecutive.
+        Self {
+            complex,
+            first_triangle: starts(count, complex.triangles.iter().map(|t| t[0])),
+            first_edge: starts(count, edges.iter().map(|e| e[0])),
+            edges,
+        }
+    }
+
+    /// What is in the ball of a vertex, whose neighbors have been found; `None` where it is not among them.
+    fn about<S: Scalar>(
+        &self,
+        center: usize,
+        scratch: &mut Scratch<S>,
+    ) -> Result<Option<Found>, Error> {
+        let Scratch {
+            neighbors,
+            number,
+            members,
+        } = scratch;
+        members.clear();
+        members.extend(neighbors.iter().map(|n| n.index as u32));
+        members.sort_unstable();
+        for (k, &v) in members.iter().enumerate() {
+            number[v as usize] = k as u32;
+        }
+        let spanned = self.spanned(members, number);
+        for &v in members.iter() {
+            number[v as usize] = OUTSIDE;
+        }
+        let Ok(own) = members.binary_search(&(center as u32)) else {
+            return Ok(None);
+        };
+        let local = spanned.part(own as u32, members.len())?;
+        let h = homology(&local)?;
+        Ok(Some(Found {
+            members: local.vertices,
+            others: local.vertices < members.len(),
+            betti_rational: h.betti_rational,
+            betti_mod2: h.betti_mod2,
+        }))
+    }
+
+    /// All triangles and edges with all their corners among the members.
+    fn spanned(&self, members: &[u32], number: &[u32]) -> Spanned {
+        let (mut triangles, mut edges) = (Vec::new(), Vec::new());
+        for &v in members {
+            let at = |starts: &[usize]| starts[v as usize]..starts[v as usize + 1];
+            for t in &self.complex.triangles[at(&self.first_triangle)] {
+                let t = t.map(|v| number[v as usize]);
+                if t.iter().all(|&k| k != OUTSIDE) {
+                    triangles.push(t);
+                }
+            }
+            for e in &self.edges[at(&self.first_edge)] {
+                let e = e.map(|v| number[v as usize]);
+                if e[1] != OUTSIDE {
+                    edges.push(e);
+                }
+            }
+        }
+        Spanned { triangles, edges }
+    }
+}
+
+impl Spanned {
+    /// The part that hangs together with one of `count` vertices, its vertices numbered anew in their order.
+    fn part(mut self, own: u32, count: usize) -> Result<Complex, Error> {
+        let mut parts = UnionFind::<u32>::new(count);
+        for &[a, b] in &self.edges {
+            parts.union(a, b);
+        }
+        let own = parts.find(own);
+        let mut names = vec![OUTSIDE; count];
+        let mut size = 0;
+        for k in 0..count as u32 {
+            if parts.find(k) == own {
+                names[k as usize] = size;
+                size += 1;
+            }
+        }
+        let here = |k: u32| names[k as usize] != OUTSIDE;
+        self.triangles.retain(|t| here(t[0]));
+        self.edges.retain(|e| here(e[0]));
+        let named = |k: u32| names[k as usize];
+        let triangles = self.triangles.iter().map(|t| t.map(named)).collect();
+        let edges = self.edges.iter().map(|e| e.map(named));
+        let edges = edges.map(|[a, b]| CurveEdge::new(a, b, 0)).collect();
+        Complex::new(size as usize, triangles, edges)
+    }
 }
 
 /// Where in a sorted list each vertex begins, and the end.

@@ -1,5 +1,6 @@
 //! The dimension test, with as much of the spectrum as it takes.
 
+use crate::spectrum::VarianceTolerance;
 use nalgebra::SMatrix;
 
 /// Directions that a ball is looked at in.
@@ -93,6 +94,11 @@ pub(super) fn compressed(c: &[f64], m: usize, rest: f64, dt: f64) -> Option<u32>
         }
     }
     if rest > 0.0 { None } else { Some(m as u32) }
+}
+
+/// The dimension test on a spectrum, largest variance first.
+pub(super) fn dimension_of(variances: &[f64], dt: f64) -> u32 {
+    VarianceTolerance::new(dt).map_or(0, |test| test.dimension_of(variances).0 as u32)
 }
 
 #[cfg(test)]

@@ -399,8 +399,3 @@ fn dimensions_plain<S: Scalar, const L: usize, const M: usize>(
     }
     both.sweep.dimensions(group, dt, out);
 }
-
-/// The dimension test on a spectrum, largest variance first.
-fn dimension_of(variances: &[f64], dt: f64) -> u32 {
-    VarianceTolerance::new(dt).map_or(0, |test| test.dimension_of(variances).0 as u32)
-}

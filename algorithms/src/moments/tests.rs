@@ -1,3 +1,4 @@
+use super::decide::dimension_of;
 use super::*;
 use crate::execute::Serial;
 use crate::principal::PrincipalFrame;

@@ -3,19 +3,12 @@
 use crate::balls::Near;
 use crate::principal::PrincipalFrame;
 use crate::singularity::{PlanePair, QuadraticPatch};
+use crate::tuning::ProjectionTuning;
 use crosscap_core::PointCloud;
 use nalgebra::Vector3;
 
 /// Rounds of fitting both sheets and sharing the points out anew.
 const ROUNDS: usize = 4;
-/// Scatter that two sheets leave of that of one: cutting the noise of a single sheet in two
-/// leaves 0.6 of it.
-const GAIN: f64 = 0.55;
-/// Least share of the points on either sheet.
-const LEAST_SHARE: f64 = 0.12;
-/// Least sine of the angle at which the planes cross.
-const LEAST_SINE: f64 = 0.25;
-
 /// Two quadratic patches in the three leading principal coordinates of a neighborhood.
 pub(super) struct CrossingSheets {
     frame: PrincipalFrame,
@@ -37,6 +30,7 @@ impl CrossingSheets {
         row: usize,
         near: &[Near],
         limit: f64,
+        tuning: &ProjectionTuning,
     ) -> Option<Self> {
         let mut near = near.to_vec();
         near.sort_unstable();
@@ -63,7 +57,7 @@ impl CrossingSheets {
             .sum();
         let pair = PlanePair::direct(points.iter().copied(), radius).ok()?;
         let along = pair.normals[0].cross(&pair.normals[1]);
-        if along.norm() < LEAST_SINE {
+        if along.norm() < tuning.sine {
             return None;
         }
         let along = along.normalize();
@@ -90,9 +84,10 @@ impl CrossingSheets {
         }
         let second: usize = owners.iter().sum();
         let share = second as f64 / points.len() as f64;
-        let even = (LEAST_SHARE..=1.0 - LEAST_SHARE).contains(&share);
+        let even = (tuning.sheet_share..=1.0 - tuning.sheet_share).contains(&share);
         let scatter = (sum / points.len() as f64).sqrt();
-        (even && sum <= GAIN * GAIN * alone && scatter <= limit).then_some(Self { frame, patches })
+        (even && sum <= tuning.gain * tuning.gain * alone && scatter <= limit)
+            .then_some(Self { frame, patches })
     }
 
     /// `x` moved onto the nearer sheet.

@@ -3,16 +3,10 @@
 use super::sheet_fit::{SheetFit, TERMS};
 use crate::balls::{BallTree, Near};
 use crate::execute::Execute;
+use crate::tuning::NoiseTuning;
 use crosscap_core::{PointCloud, Scalar};
 use std::f64::consts::PI;
 
-/// Points of the fits, each size twice the one before.
-const SIZES: [usize; 5] = [24, 48, 96, 192, 384];
-/// Places at which noise is read.
-const PLACES: usize = 400;
-/// What scatters less than this share of the extent of its neighborhood is a sheet: in a ball that is
-/// no larger than the noise it is half of the extent.
-const THIN: f64 = 0.3;
 /// Twice the points let the square of what a quadratic leaves of a smooth surface grow so many times:
 /// the third order of the radius, whose square is the number of points.
 const GROWTH: f64 = 8.0;
@@ -38,37 +32,45 @@ pub struct Noise {
 }
 
 /// Squares of scatter and extent at one place, by size.
-type Reading = [Option<[f64; 2]>; SIZES.len()];
+type Reading = [Option<[f64; 2]>; 5];
 
 impl Noise {
     /// Of a cloud; `None` where it is thin at none of the sizes (noise that hides the surface, or no
     /// surface), has no direction normal to a surface, or fewer than 48 points. O(n log n) distances and 2,000 fits.
-    pub fn of<S: Scalar>(cloud: &PointCloud<S>, execute: &dyn Execute) -> Option<Self> {
+    pub fn of<S: Scalar>(
+        cloud: &PointCloud<S>,
+        tuning: &NoiseTuning,
+        execute: &dyn Execute,
+    ) -> Option<Self> {
         let n = cloud.dimension();
         // No neighborhood is more than a third of the cloud.
-        let sizes = SIZES.iter().filter(|&&k| 3 * k <= cloud.len()).count();
+        let sizes = tuning
+            .sizes
+            .iter()
+            .filter(|&&k| 3 * k <= cloud.len())
+            .count();
         if n < 3 || sizes == 0 {
             return None;
         }
         let places = cloud.cast::<f64>();
         let tree = BallTree::new(n, places.coordinates());
-        let most = SIZES[sizes - 1];
-        let stride = cloud.len().div_ceil(PLACES).max(1) as u32;
+        let most = tuning.sizes[sizes - 1];
+        let stride = cloud.len().div_ceil(tuning.places).max(1) as u32;
         let readings = tree.nearest_of_each(
             most,
             |row| row % stride == 0,
             execute,
-            |_, near| read(&places, near),
+            |_, near| read(&places, near, tuning.sizes),
         );
         let usual = |size: usize, which: usize| {
             let values = readings.iter().filter_map(|r| r[size].map(|x| x[which]));
             median(values.collect())
         };
-        for (size, &neighbors) in SIZES.iter().enumerate().take(sizes) {
+        for (size, &neighbors) in tuning.sizes.iter().enumerate().take(sizes) {
             let (Some(scatter), Some(extent)) = (usual(size, 0), usual(size, 1)) else {
                 continue;
             };
-            if scatter > THIN * THIN * extent {
+            if scatter > tuning.thin * tuning.thin * extent {
                 continue;
             }
             let wider = (size + 1 < sizes).then(|| usual(size + 1, 0)).flatten();
@@ -94,8 +96,8 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-/// Scatter and extent about one place.
-fn read(places: &PointCloud<f64>, near: &[Near]) -> Reading {
+/// Scatter and extent about one place, for each size.
+fn read(places: &PointCloud<f64>, near: &[Near], sizes: [usize; 5]) -> Reading {
     let n = places.dimension();
     let mut near = near.to_vec();
     near.sort_unstable();
@@ -105,7 +107,7 @@ fn read(places: &PointCloud<f64>, near: &[Near]) -> Reading {
         points.extend_from_slice(places.point(x.index() as usize));
     }
     let weights = vec![1.0; near.len()];
-    SIZES.map(|size| {
+    sizes.map(|size| {
         if size > near.len() || !fit.fit(&points[..size * n], &weights[..size]) {
             return None;
         }
@@ -137,7 +139,8 @@ mod tests {
     fn noise_is_measured_from_a_tenth_of_the_spacing_to_more_than_it() {
         for name in ["sphere", "torus", "two_spheres", "moebius"] {
             for noise in [0.005, 0.02, 0.08] {
-                let found = Noise::of(&sample(name, noise), &Serial).unwrap();
+                let found =
+                    Noise::of(&sample(name, noise), &NoiseTuning::MEASURED, &Serial).unwrap();
                 let ratio = found.deviation / noise;
                 assert!((0.8..1.25).contains(&ratio), "{name} {noise}: {found:?}");
             }
@@ -154,7 +157,7 @@ mod tests {
             "double_bubble",
             "boy_surface",
         ] {
-            let found = Noise::of(&sample(name, 0.0), &Serial).unwrap();
+            let found = Noise::of(&sample(name, 0.0), &NoiseTuning::MEASURED, &Serial).unwrap();
             assert!(found.of_spacing() < 0.05, "{name}: {found:?}");
         }
     }
@@ -168,7 +171,7 @@ mod tests {
             .iter()
             .map(|x| x + 0.03 * random.normal());
         let noisy = PointCloud::new(8, noisy.collect()).unwrap();
-        let found = Noise::of(&noisy, &Serial).unwrap();
+        let found = Noise::of(&noisy, &NoiseTuning::MEASURED, &Serial).unwrap();
         assert!((found.deviation / 0.03 - 1.0).abs() < 0.2, "{found:?}");
     }
 
@@ -176,7 +179,21 @@ mod tests {
     fn a_ball_has_no_surface() {
         let mut random = crate::surfaces::Random::new(2);
         let rows = (0..6000).map(|_| random.between(-1.0, 1.0)).collect();
-        assert!(Noise::of(&PointCloud::new(3, rows).unwrap(), &Serial).is_none());
-        assert!(Noise::of(&PointCloud::new(2, vec![0.5; 400]).unwrap(), &Serial).is_none());
+        assert!(
+            Noise::of(
+                &PointCloud::new(3, rows).unwrap(),
+                &NoiseTuning::MEASURED,
+                &Serial
+            )
+            .is_none()
+        );
+        assert!(
+            Noise::of(
+                &PointCloud::new(2, vec![0.5; 400]).unwrap(),
+                &NoiseTuning::MEASURED,
+                &Serial
+            )
+            .is_none()
+        );
     }
 }

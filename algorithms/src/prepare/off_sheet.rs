@@ -3,40 +3,11 @@
 use super::LocalSpacing;
 use super::sheet_fit::SheetFit;
 use crate::balls::Near;
+use crate::tuning::OutlierTuning;
 use crosscap_core::{PointCloud, squared_distance};
 
-/// Neighbors that a point is judged by: a disc of radius 2.8 spacings of a surface.
-pub(super) const NEIGHBORS: usize = 24;
-/// The unit of the lengths below is the spacing of the surface next to a point, `LocalSpacing::low`. A point this
-/// near to the middle of its 16 nearest is among them: the middle of so many scattered in a disc is 0.4 off,
-/// and an outlier is as far off as it lies from the sheet.
-pub(super) const CENTRAL: f64 = 0.8;
-/// Distance from the sheet that counts: less is an edge or a tip, or harmless.
-pub(super) const LEAST_DISTANCE: f64 = 1.0;
-/// The same in units of the noise, of the neighbors and usual in the cloud. A fit is known to no more than
-/// twice the noise at its rim, so that this is four standard deviations there and eight in the middle.
-pub(super) const LEAST_DEVIATIONS: f64 = 8.0;
-/// A neighbor with a larger spacing of its own is not on a surface as dense as the densest near it. On
-/// straight boundaries it is 1.4 times as large.
-const SPARSE: f64 = 2.0;
-/// A neighbor that is off the sheet by this share of the limit may be on another stratum.
-const OFF: f64 = 0.5;
-/// So many points of a surface off the sheet are another one, when they are as near to the point as the radius.
-const STRATUM: usize = 3;
-const STRATUM_RADIUS: f64 = 3.0;
-/// Two are enough for a point nearer to the sheet than this: beside a crossing a second sheet has few points, and
-/// an outlier there is hardly one.
-const BESIDE: f64 = 1.75;
-const STRATUM_BESIDE: usize = 2;
-/// The point and the three nearest off the sheet, or the two that there are, are a curve when they are in
-/// line: cosine of 18 degrees. Three are by chance once in 400 times.
-const ON_CURVE: usize = 3;
-const IN_LINE: f64 = 0.95;
-/// A point this many times farther out, along the plane, than the farthest of its neighbors is alone.
-const ALONE: f64 = 3.0;
-/// A point whose second nearest is farther is alone: next to a straight boundary chance leaves so large a half disc
-/// empty but for one point once in 10^7.
-const EMPTY: f64 = 4.0;
+// What is left here are constants of the estimate, not decisions: how a robust scale is read.
+
 /// Rounds of weighting points by how far they are from the sheet.
 const WEIGHTINGS: usize = 4;
 /// Weights end at this many times the scale of the residuals (Beaton & Tukey 1974: 95 % efficiency).
@@ -60,6 +31,7 @@ pub(super) struct Judgement {
 pub(super) struct Judge<'a> {
     cloud: &'a PointCloud<f64>,
     spacing: &'a LocalSpacing,
+    tuning: &'a OutlierTuning,
     fit: SheetFit,
     offset: Vec<f64>,
 }
@@ -73,10 +45,15 @@ struct Around {
 }
 
 impl<'a> Judge<'a> {
-    pub(super) fn new(cloud: &'a PointCloud<f64>, spacing: &'a LocalSpacing) -> Self {
+    pub(super) fn new(
+        cloud: &'a PointCloud<f64>,
+        spacing: &'a LocalSpacing,
+        tuning: &'a OutlierTuning,
+    ) -> Self {
         Self {
             cloud,
             spacing,
+            tuning,
             fit: SheetFit::new(cloud.dimension()),
             offset: Vec::new(),
         }
@@ -121,8 +98,8 @@ impl<'a> Judge<'a> {
 
     /// `None` where there is no sheet.
     pub(super) fn judge(&mut self, at: usize, near: &[Near]) -> Option<Judgement> {
-        let unit = self.spacing.low(at);
-        if near.len() < NEIGHBORS || unit <= 0.0 {
+        let (unit, tuning) = (self.spacing.low(at), self.tuning);
+        if near.len() < tuning.neighbors || unit <= 0.0 {
             return None;
         }
         let mut near: Vec<Near> = near.to_vec();
@@ -136,7 +113,9 @@ impl<'a> Judge<'a> {
         for x in &near {
             let row = x.index() as usize;
             around.points.extend_from_slice(self.cloud.point(row));
-            around.dense.push(self.spacing.raw(row) <= SPARSE * unit);
+            around
+                .dense
+                .push(self.spacing.raw(row) <= tuning.sparse * unit);
         }
         let scale = self.lay(&mut around)?;
         let own = self.cloud.point(at);
@@ -147,10 +126,10 @@ impl<'a> Judge<'a> {
             }
         }
         let distance = self.fit.distance(own, 1.5 * reach, &mut self.offset);
-        let limit = (LEAST_DISTANCE * unit).max(LEAST_DEVIATIONS * scale);
+        let limit = (tuning.least_distance * unit).max(tuning.least_deviations * scale);
         let second = near[1].square().sqrt();
         let out = self.fit.out(own, &mut self.offset);
-        let alone = out > ALONE * reach || second > EMPTY * unit;
+        let alone = out > tuning.alone * reach || second > tuning.empty * unit;
         Some(Judgement {
             distance: if alone {
                 distance.max(second)
@@ -158,40 +137,46 @@ impl<'a> Judge<'a> {
                 distance
             } / unit,
             scale: scale / unit,
-            unsupported: distance > limit && !around.supports(own, distance, limit, unit),
+            unsupported: distance > limit && !around.supports(own, [distance, limit, unit], tuning),
             alone,
         })
     }
 }
 
 impl Around {
-    /// Whether points off the sheet make a stratum that `own`, at the given distance from the sheet, is on.
-    fn supports(&self, own: &[f64], distance: f64, limit: f64, unit: f64) -> bool {
+    /// Whether points off the sheet make a stratum that `own`, at the given distance from the sheet, is on. What is
+    /// nearer than the limit is on the sheet; the unit is the spacing of the surface.
+    fn supports(
+        &self,
+        own: &[f64],
+        [distance, limit, unit]: [f64; 3],
+        tuning: &OutlierTuning,
+    ) -> bool {
         let rows = self.points.chunks_exact(own.len()).zip(&self.dense);
         let off: Vec<(&[f64], bool)> = (rows.zip(&self.distances))
-            .filter(|x| *x.1 > OFF * limit)
+            .filter(|x| *x.1 > tuning.off * limit)
             .map(|((x, dense), _)| (x, *dense))
             .collect();
-        let beside = distance < BESIDE * unit;
+        let beside = distance < tuning.beside * unit;
         let (radius, needed) = if beside {
-            (f64::INFINITY, STRATUM_BESIDE)
+            (f64::INFINITY, tuning.stratum_beside)
         } else {
-            (STRATUM_RADIUS * unit, STRATUM)
+            (tuning.stratum_radius * unit, tuning.stratum)
         };
         let dense = (off.iter())
             .filter(|x| x.1 && squared_distance(x.0, own) < radius * radius)
             .count();
-        let nearest = &off[..off.len().min(ON_CURVE)];
+        let nearest = &off[..off.len().min(tuning.on_curve)];
         let line = nearest.len() >= 2
-            && (nearest.windows(2)).all(|pair| in_line(own, pair[0].0, pair[1].0));
+            && (nearest.windows(2)).all(|pair| in_line(own, pair[0].0, pair[1].0, tuning.in_line));
         line || dense >= needed
     }
 }
 
-/// Whether two points are in line with `own`, on one side or on both.
-fn in_line(own: &[f64], a: &[f64], b: &[f64]) -> bool {
+/// Whether two points are in line with `own`, on one side or on both, by the least cosine that counts.
+fn in_line(own: &[f64], a: &[f64], b: &[f64], least: f64) -> bool {
     let product: f64 = (own.iter().zip(a.iter().zip(b)))
         .map(|(o, (a, b))| (a - o) * (b - o))
         .sum();
-    product.abs() > IN_LINE * (squared_distance(own, a) * squared_distance(own, b)).sqrt()
+    product.abs() > least * (squared_distance(own, a) * squared_distance(own, b)).sqrt()
 }

@@ -1,17 +1,12 @@
 //! Points that lie on nothing: off the sheet of their neighbors, and alone there.
 
 use super::LocalSpacing;
-use super::off_sheet::{CENTRAL, Judge, Judgement, LEAST_DEVIATIONS, LEAST_DISTANCE, NEIGHBORS};
+use super::off_sheet::{Judge, Judgement};
 use super::scattered::scattered;
 use crate::balls::BallTree;
 use crate::execute::Execute;
+use crate::tuning::OutlierTuning;
 use crosscap_core::{PointCloud, Scalar};
-
-/// Rounds of looking again without those that were found: outliers far from the surface come into sight when
-/// nearer ones are gone.
-const ROUNDS: usize = 8;
-/// Where more than this share would be outliers, the cloud is something else.
-const MOST: f64 = 0.12;
 
 /// The outliers of a cloud.
 ///
@@ -39,6 +34,7 @@ impl Outliers {
     pub fn of<S: Scalar>(
         cloud: &PointCloud<S>,
         spacing: &LocalSpacing,
+        tuning: &OutlierTuning,
         execute: &dyn Execute,
     ) -> Self {
         let whole = cloud.cast::<f64>();
@@ -46,15 +42,15 @@ impl Outliers {
         let mut found: Vec<(usize, f64)> = Vec::new();
         let mut rest = whole.clone();
         let mut own = None;
-        for _ in 0..ROUNDS {
-            let new = round(&rest, own.as_ref().unwrap_or(spacing), execute);
+        for _ in 0..tuning.rounds {
+            let new = round(&rest, own.as_ref().unwrap_or(spacing), tuning, execute);
             if new.is_empty() {
                 break;
             }
             let mut out = vec![false; kept.len()];
             new.iter().for_each(|x| out[x.0] = true);
             found.extend(new.iter().map(|&(at, distance)| (kept[at], distance)));
-            if found.len() as f64 > MOST * cloud.len() as f64 {
+            if found.len() as f64 > tuning.most * cloud.len() as f64 {
                 return Self::default();
             }
             kept = (kept.iter().zip(&out).filter(|x| !x.1))
@@ -88,20 +84,21 @@ impl Outliers {
 fn round(
     cloud: &PointCloud<f64>,
     spacing: &LocalSpacing,
+    tuning: &OutlierTuning,
     execute: &dyn Execute,
 ) -> Vec<(usize, f64)> {
-    let mut out = scattered(cloud, spacing, execute);
-    let suspect = |at: usize| spacing.off_center(at) > CENTRAL * spacing.low(at);
-    if cloud.len() <= NEIGHBORS || !(0..cloud.len()).any(suspect) {
+    let mut out = scattered(cloud, spacing, tuning, execute);
+    let suspect = |at: usize| spacing.off_center(at) > tuning.central * spacing.low(at);
+    if cloud.len() <= tuning.neighbors || !(0..cloud.len()).any(suspect) {
         return out;
     }
     let tree = BallTree::new(cloud.dimension(), cloud.coordinates());
     let judged = tree.nearest_of_each(
-        NEIGHBORS,
+        tuning.neighbors,
         |at| suspect(at as usize),
         execute,
         |at, near| {
-            let judgement = Judge::new(cloud, spacing).judge(at as usize, near)?;
+            let judgement = Judge::new(cloud, spacing, tuning).judge(at as usize, near)?;
             Some((at as usize, judgement))
         },
     );
@@ -110,7 +107,7 @@ fn round(
     let mut scales: Vec<f64> = judged.iter().map(|x| x.1.scale).collect();
     scales.sort_unstable_by(f64::total_cmp);
     let usual = scales.get(scales.len() / 2).copied().unwrap_or(0.0);
-    let limit = LEAST_DISTANCE.max(LEAST_DEVIATIONS * usual);
+    let limit = tuning.least_distance.max(tuning.least_deviations * usual);
     let alone = (judged.into_iter())
         .filter(|(_, x)| x.alone || x.unsupported && x.distance > limit)
         .map(|(at, x)| (at, x.distance));
@@ -129,7 +126,7 @@ mod tests {
 
     fn outliers(cloud: &PointCloud<f64>) -> Outliers {
         let spacing = LocalSpacing::of(cloud, &Serial).unwrap();
-        Outliers::of(cloud, &spacing, &Serial)
+        Outliers::of(cloud, &spacing, &OutlierTuning::MEASURED, &Serial)
     }
 
     fn sample(name: &str, sampling: &Sampling) -> PointCloud<f64> {

@@ -2,12 +2,10 @@
 
 use super::{LocalSpacing, Noise, Outliers, Projection, Resolution};
 use crate::execute::Execute;
+use crate::tuning::PreparationTuning;
 use crosscap_core::{Error, PointCloud, Scalar};
 use serde::Serialize;
 use std::fmt;
-
-/// Noise in spacings from which points are moved onto fits: below, neighborhoods are flat enough.
-const LEAST_NOISE: f64 = 0.1;
 
 /// What may be done about a cloud.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -37,10 +35,11 @@ impl Remedies {
 /// use crosscap_algorithms::execute::Serial;
 /// use crosscap_algorithms::prepare::{Preparation, Remedies};
 /// use crosscap_algorithms::surfaces::{SampleSurface, Sampling};
+/// use crosscap_algorithms::tuning::PreparationTuning;
 /// let mut sampling = Sampling::new(2000, 1);
 /// sampling.noise = 0.03;
 /// let noisy = SampleSurface::find("sphere")?.sample(&sampling)?.points;
-/// let found = Preparation::of(&noisy, Remedies::ALL, &Serial)?;
+/// let found = Preparation::of(&noisy, Remedies::ALL, &PreparationTuning::MEASURED, &Serial)?;
 /// assert!(found.outliers.is_empty());
 /// assert!((found.noise.unwrap().deviation - 0.03).abs() < 0.005);
 /// assert!(found.projection.is_some());
@@ -63,6 +62,8 @@ pub struct Preparation {
     pub noise: Option<Noise>,
     /// The kept points moved onto fits, where there is enough noise and that was allowed.
     pub projection: Option<Projection>,
+    /// The numbers that decided.
+    pub tuning: PreparationTuning,
 }
 
 impl Preparation {
@@ -74,10 +75,11 @@ impl Preparation {
     pub fn of<S: Scalar>(
         cloud: &PointCloud<S>,
         remedies: Remedies,
+        tuning: &PreparationTuning,
         execute: &dyn Execute,
     ) -> Result<Self, Error> {
         let mut spacing = LocalSpacing::of(cloud, execute)?;
-        let outliers = Outliers::of(cloud, &spacing, execute);
+        let outliers = Outliers::of(cloud, &spacing, &tuning.outliers, execute);
         let left_out = remedies.outliers && !outliers.is_empty();
         let (kept, rest) = if left_out {
             let kept: Vec<usize> = (0..cloud.len())
@@ -89,16 +91,19 @@ impl Preparation {
         } else {
             ((0..cloud.len()).collect(), cloud.clone())
         };
-        let noise = Noise::of(&rest, execute);
-        let loud = noise.filter(|n| remedies.projection && n.of_spacing() >= LEAST_NOISE);
+        let noise = Noise::of(&rest, &tuning.noise, execute);
+        let loud = noise
+            .filter(|n| remedies.projection && n.of_spacing() >= tuning.projection.least_noise);
         Ok(Self {
-            resolution: Resolution::of(&rest, &spacing),
-            projection: loud.map(|noise| Projection::of(&rest, &noise, execute)),
+            resolution: Resolution::of(&rest, &spacing, &tuning.resolution),
+            projection: loud
+                .map(|noise| Projection::of(&rest, &noise, &tuning.projection, execute)),
             spacing,
             outliers,
             left_out,
             kept,
             noise,
+            tuning: tuning.clone(),
         })
     }
 
@@ -124,6 +129,7 @@ impl Preparation {
             noise_of_spacing: self.noise.map(|n| n.of_spacing()),
             moved: self.projection.as_ref().map(|p| p.moved),
             unexplained: self.projection.as_ref().map_or(0, |p| p.unexplained),
+            tuning: self.tuning.clone(),
         }
     }
 }
@@ -156,6 +162,28 @@ pub struct PreparationSummary {
     pub moved: Option<f64>,
     /// Points that no fit explained, and that stayed where others were moved.
     pub unexplained: usize,
+    /// The numbers that decided.
+    pub tuning: PreparationTuning,
+}
+
+impl PreparationSummary {
+    /// The same with rows by other names: those of the cloud that the one looked at was taken from.
+    pub fn named(mut self, name: impl Fn(usize) -> usize) -> Self {
+        self.outliers.iter_mut().for_each(|row| *row = name(*row));
+        self
+    }
+
+    /// The same with more rows left out.
+    pub fn without(mut self, rows: &[usize]) -> Self {
+        if !self.outliers_left_out {
+            self.outliers.clear();
+        }
+        self.outliers.extend(rows);
+        self.outliers.sort_unstable();
+        self.outliers.dedup();
+        self.outliers_left_out = !self.outliers.is_empty();
+        self
+    }
 }
 
 /// Rows that are named one by one.
@@ -219,7 +247,9 @@ mod tests {
     fn a_clean_cloud_stays_as_it_is() {
         for name in ["torus", "two_spheres", "annulus"] {
             let cloud = sample(name, 0.0);
-            let found = Preparation::of(&cloud, Remedies::ALL, &Serial).unwrap();
+            let found =
+                Preparation::of(&cloud, Remedies::ALL, &PreparationTuning::MEASURED, &Serial)
+                    .unwrap();
             assert!(
                 found.points(&cloud) == cloud,
                 "{name}: {:?}",
@@ -234,15 +264,30 @@ mod tests {
         let mut rows = sample("torus", 0.04).coordinates().to_vec();
         rows.extend([0.0, 0.0, 9.0]);
         let cloud = PointCloud::new(3, rows).unwrap();
-        let found = Preparation::of(&cloud, Remedies::ALL, &Serial).unwrap();
+        let found =
+            Preparation::of(&cloud, Remedies::ALL, &PreparationTuning::MEASURED, &Serial).unwrap();
         assert_eq!(found.outliers.rows, [3000]);
         assert_eq!(found.points(&cloud).len(), 3000);
         let said = found.summary().to_string();
         assert!(said.contains("left out 1 outlier (row 3000)"), "{said}");
         assert!(said.contains("moved onto fits"), "{said}");
-        let only = Preparation::of(&cloud, Remedies::NONE, &Serial).unwrap();
+        let only = Preparation::of(
+            &cloud,
+            Remedies::NONE,
+            &PreparationTuning::MEASURED,
+            &Serial,
+        )
+        .unwrap();
         assert_eq!(only.outliers.rows, [3000]);
         assert!(only.points(&cloud) == cloud);
         assert!(!only.summary().outliers_left_out);
+        // What was seen and stayed is not among those that are left out later.
+        let later = only.summary().named(|row| row + 10).without(&[7, 3, 7]);
+        assert_eq!(later.outliers, [3, 7]);
+        assert!(
+            later
+                .to_string()
+                .contains("left out 2 outliers (rows 3, 7)")
+        );
     }
 }

@@ -5,23 +5,9 @@ use super::crossing_sheets::CrossingSheets;
 use super::sheet_fit::SheetFit;
 use crate::balls::{BallTree, Near};
 use crate::execute::Execute;
+use crate::tuning::ProjectionTuning;
 use crosscap_core::{PointCloud, Scalar, squared_distance};
 use std::f64::consts::PI;
-
-/// Fits reach this many times the noise: the tilt of a fit is known to the noise over its reach and the
-/// root of its points.
-const REACH: f64 = 5.0;
-/// Fewest points of a fit.
-const LEAST_NEIGHBORS: usize = 32;
-/// Most, as a share of the cloud and at all.
-const MOST_SHARE: f64 = 0.1;
-const MOST_NEIGHBORS: usize = 400;
-/// Noise in spacings from which a third round is made.
-const LOUD: f64 = 0.7;
-/// Scatter, in units of the usual one of the round, that one sheet may leave: of 32 points it is known to 14 %.
-const ONE_SHEET: f64 = 1.6;
-/// Where two sheets explain no more than one does, the same limit, beyond which points stay where they are.
-const UNEXPLAINED: f64 = 2.5;
 
 /// A cloud whose points were moved onto local fits, to take noise away.
 ///
@@ -58,15 +44,25 @@ struct Step {
 impl Projection {
     /// Moves the points of a noisy cloud. O(n log n) distances and a fit of O(k N) a point and round, for k
     /// points of a fit.
-    pub fn of<S: Scalar>(cloud: &PointCloud<S>, noise: &Noise, execute: &dyn Execute) -> Self {
+    pub fn of<S: Scalar>(
+        cloud: &PointCloud<S>,
+        noise: &Noise,
+        tuning: &ProjectionTuning,
+        execute: &dyn Execute,
+    ) -> Self {
         let original = cloud.cast::<f64>();
-        let wanted = PI * (REACH * noise.of_spacing()).powi(2);
-        let most = MOST_NEIGHBORS.min((MOST_SHARE * cloud.len() as f64) as usize);
-        let neighbors = (wanted as usize).min(most).max(LEAST_NEIGHBORS);
+        let wanted = PI * (tuning.reach * noise.of_spacing()).powi(2);
+        let share = (tuning.most_share * cloud.len() as f64) as usize;
+        let most = tuning.most_neighbors.min(share);
+        let neighbors = (wanted as usize).min(most).max(tuning.least_neighbors);
         let mut out = Self {
             cloud: original.clone(),
             neighbors,
-            rounds: if noise.of_spacing() > LOUD { 3 } else { 2 },
+            rounds: if noise.of_spacing() > tuning.loud {
+                3
+            } else {
+                2
+            },
             moved: 0.0,
             at_crossings: 0,
             unexplained: 0,
@@ -76,7 +72,7 @@ impl Projection {
             return out;
         }
         for _ in 0..out.rounds {
-            out.round(execute);
+            out.round(tuning, execute);
         }
         let rows = original.iter().zip(out.cloud.iter());
         let sum: f64 = rows.map(|(a, b)| squared_distance(a, b)).sum();
@@ -84,7 +80,7 @@ impl Projection {
         out
     }
 
-    fn round(&mut self, execute: &dyn Execute) {
+    fn round(&mut self, tuning: &ProjectionTuning, execute: &dyn Execute) {
         let tree = BallTree::new(self.cloud.dimension(), self.cloud.coordinates());
         let cloud = self.cloud.clone();
         let steps = tree.nearest_of_each(
@@ -100,10 +96,10 @@ impl Projection {
         let mut alone = vec![None; cloud.len()];
         for step in steps.into_iter().flatten() {
             let row = step.row as usize;
-            contested[row] = step.scatter > ONE_SHEET * usual;
+            contested[row] = step.scatter > tuning.one_sheet * usual;
             if !contested[row] {
                 self.cloud.set_point(row, &step.place);
-            } else if step.scatter <= UNEXPLAINED * usual {
+            } else if step.scatter <= tuning.unexplained * usual {
                 alone[row] = Some(step.place);
             }
         }
@@ -112,7 +108,8 @@ impl Projection {
             |row| contested[row as usize],
             execute,
             |row, near| {
-                let sheets = CrossingSheets::through(&cloud, row as usize, near, ONE_SHEET * usual);
+                let limit = tuning.one_sheet * usual;
+                let sheets = CrossingSheets::through(&cloud, row as usize, near, limit, tuning);
                 (row, sheets.map(|s| s.projected(cloud.point(row as usize))))
             },
         );
@@ -165,6 +162,7 @@ mod tests {
     use super::*;
     use crate::execute::Serial;
     use crate::surfaces::{RigidMotion, SampleSurface, Sampling};
+    use crate::tuning::NoiseTuning;
 
     fn sample(name: &str, count: usize, noise: f64) -> PointCloud<f64> {
         let sampling = Sampling {
@@ -176,8 +174,8 @@ mod tests {
     }
 
     fn projection(cloud: &PointCloud<f64>) -> Projection {
-        let noise = Noise::of(cloud, &Serial).unwrap();
-        Projection::of(cloud, &noise, &Serial)
+        let noise = Noise::of(cloud, &NoiseTuning::MEASURED, &Serial).unwrap();
+        Projection::of(cloud, &noise, &ProjectionTuning::MEASURED, &Serial)
     }
 
     fn off(cloud: &PointCloud<f64>, distance: impl Fn(&[f64]) -> f64) -> f64 {
@@ -247,7 +245,7 @@ mod tests {
             spacing: 0.05,
             neighbors: 24,
         };
-        let found = Projection::of(&moved, &noise, &Serial);
+        let found = Projection::of(&moved, &noise, &ProjectionTuning::MEASURED, &Serial);
         assert!(found.moved < 1e-7, "{}", found.moved);
     }
 }

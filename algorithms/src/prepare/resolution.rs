@@ -1,28 +1,15 @@
 //! How finely the coordinates of a cloud are resolved.
 
 use super::LocalSpacing;
+use crate::tuning::ResolutionTuning;
 use crosscap_core::{PointCloud, Scalar};
-
-/// Values of one coordinate are on a grid when their least gap is this many times what chance leaves
-/// between as many of them. The least of n gaps is exponential with mean range / n^2, so chance
-/// passes this once in e^40.
-const BEYOND_CHANCE: f64 = 40.0;
-/// How far a gap may be from a whole number of steps, as a share of a step: 32-bit numbers that
-/// stand for decimals are off by their own rounding.
-const OFF_STEP: f64 = 0.05;
-/// Of the gaps, the share that must be whole numbers of steps.
-const WHOLE: f64 = 0.99;
-/// Steps of half a spacing and more make a lattice of the cloud.
-const LATTICE: f64 = 0.5;
-/// Steps from a twentieth of a spacing on are noise that is seen.
-const COARSE: f64 = 0.05;
 
 /// The step that the coordinates of a cloud are multiples of: that of their number format at their
 /// distance from the origin, or that of whoever rounded them.
 ///
 /// Per coordinate the least gap between two different values. Of n values scattered over a range
 /// two are as near as range / n^2; where the least gap is 40 times that and more, and gaps
-/// are whole numbers of it, it is a step. Rounding to steps of h moves a point by h / sqrt 12 (root mean square)
+/// are whole numbers of it, it is a step ([`ResolutionTuning`]). Rounding to steps of h moves a point by h / sqrt 12 (root mean square)
 /// a coordinate. O(N n log n).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -36,7 +23,11 @@ pub struct Resolution {
 
 impl Resolution {
     /// Of a cloud whose local spacing is known.
-    pub fn of<S: Scalar>(cloud: &PointCloud<S>, spacing: &LocalSpacing) -> Self {
+    pub fn of<S: Scalar>(
+        cloud: &PointCloud<S>,
+        spacing: &LocalSpacing,
+        tuning: &ResolutionTuning,
+    ) -> Self {
         let n = cloud.dimension();
         let largest = cloud
             .coordinates()
@@ -48,7 +39,7 @@ impl Resolution {
             .filter_map(|axis| {
                 values.clear();
                 values.extend(cloud.iter().map(|row| row[axis].as_f64()));
-                step_of(&mut values)
+                step_of(&mut values, tuning)
             })
             .fold(format, f64::max);
         let median = spacing.median();
@@ -60,34 +51,34 @@ impl Resolution {
 
     /// Whether the points are places of a lattice (voxels, integers), as the step is half of their
     /// spacing and more.
-    pub fn is_lattice(&self) -> bool {
-        self.of_spacing >= LATTICE
+    pub fn is_lattice(&self, tuning: &ResolutionTuning) -> bool {
+        self.of_spacing >= tuning.lattice
     }
 
     /// Whether rounding is a noise that shows: the step is a twentieth of the spacing and more.
-    pub fn is_coarse(&self) -> bool {
-        self.of_spacing >= COARSE
+    pub fn is_coarse(&self, tuning: &ResolutionTuning) -> bool {
+        self.of_spacing >= tuning.coarse
     }
 }
 
 /// The step of the values of one coordinate, where there is one.
-fn step_of(values: &mut [f64]) -> Option<f64> {
+fn step_of(values: &mut [f64], tuning: &ResolutionTuning) -> Option<f64> {
     let count = values.len();
     values.sort_unstable_by(f64::total_cmp);
     let range = values.last()? - values.first()?;
     let gaps = || values.windows(2).map(|w| w[1] - w[0]).filter(|g| *g > 0.0);
     let step = gaps().fold(f64::INFINITY, f64::min);
     let chance = range / (count as f64).powi(2);
-    if !step.is_finite() || step <= BEYOND_CHANCE * chance {
+    if !step.is_finite() || step <= tuning.beyond_chance * chance {
         return None;
     }
     let whole = |g: f64| {
         let steps = g / step;
-        (steps - steps.round()).abs() <= OFF_STEP
+        (steps - steps.round()).abs() <= tuning.off_step
     };
     let all = gaps().count();
     let fit = gaps().filter(|&g| whole(g)).count();
-    (fit as f64 >= WHOLE * all as f64).then_some(step)
+    (fit as f64 >= tuning.whole * all as f64).then_some(step)
 }
 
 #[cfg(test)]
@@ -96,9 +87,12 @@ mod tests {
     use crate::execute::Serial;
     use crate::surfaces::{SampleSurface, Sampling};
 
+    const USUAL: ResolutionTuning = ResolutionTuning::MEASURED;
+
     fn resolution<S: Scalar>(rows: Vec<S>) -> Resolution {
         let cloud = PointCloud::new(3, rows).unwrap();
-        Resolution::of(&cloud, &LocalSpacing::of(&cloud, &Serial).unwrap())
+        let spacing = LocalSpacing::of(&cloud, &Serial).unwrap();
+        Resolution::of(&cloud, &spacing, &USUAL)
     }
 
     fn sphere(seed: u64) -> Vec<f64> {
@@ -112,7 +106,7 @@ mod tests {
         for seed in 0..20 {
             let found = resolution(sphere(seed));
             assert!(
-                found.step < 1e-15 && !found.is_coarse(),
+                found.step < 1e-15 && !found.is_coarse(&USUAL),
                 "{seed}: {found:?}"
             );
         }
@@ -131,8 +125,8 @@ mod tests {
                 (found.step * unit - 1.0).abs() < 1e-6,
                 "{digits}: {found:?}"
             );
-            assert_eq!(found.is_coarse(), digits < 3, "{digits}: {found:?}");
-            assert_eq!(found.is_lattice(), digits == 1, "{digits}: {found:?}");
+            assert_eq!(found.is_coarse(&USUAL), digits < 3, "{digits}: {found:?}");
+            assert_eq!(found.is_lattice(&USUAL), digits == 1, "{digits}: {found:?}");
         }
     }
 
@@ -143,8 +137,8 @@ mod tests {
             .collect();
         let found = resolution(far);
         assert_eq!(found.step, 1.0 / 32.0);
-        assert!(found.is_coarse());
+        assert!(found.is_coarse(&USUAL));
         let near: Vec<f32> = sphere(2).iter().map(|&x| x as f32).collect();
-        assert!(!resolution(near).is_coarse());
+        assert!(!resolution(near).is_coarse(&USUAL));
     }
 }

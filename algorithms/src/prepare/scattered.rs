@@ -1,20 +1,12 @@
 //! Points that fill space: outliers far from the surface, which have only each other.
 
 use super::LocalSpacing;
-use super::off_sheet::{MEDIAN_TO_SCALE, NEIGHBORS};
+use super::off_sheet::MEDIAN_TO_SCALE;
 use super::sheet_fit::SheetFit;
 use crate::balls::{BallTree, Near};
 use crate::execute::Execute;
+use crate::tuning::OutlierTuning;
 use crosscap_core::PointCloud;
-
-/// Spacing, in units of the usual one, from which points are looked at.
-const SPARSE: f64 = 2.5;
-/// Least mean crowding of a point and its neighbors, between 0.25 of a surface and 0.39 of space. Of 25
-/// values it is known to 0.03 to 0.05.
-const CROWDED: f64 = 0.32;
-/// Least distance of the neighbors from a sheet of their own, as a share of its extent: points in a ball have a
-/// third, those of a surface that bends a tenth.
-const THICK: f64 = 0.2;
 
 /// The points that lie sparsely and fill space with their neighbors, with their spacing in units of the usual one.
 ///
@@ -23,30 +15,31 @@ const THICK: f64 = 0.2;
 pub(super) fn scattered(
     cloud: &PointCloud<f64>,
     spacing: &LocalSpacing,
+    tuning: &OutlierTuning,
     execute: &dyn Execute,
 ) -> Vec<(usize, f64)> {
-    let sparse = |at: usize| spacing.raw(at) > SPARSE * spacing.median();
-    if cloud.len() <= NEIGHBORS || !(0..cloud.len()).any(sparse) {
+    let sparse = |at: usize| spacing.raw(at) > tuning.scattered * spacing.median();
+    if cloud.len() <= tuning.neighbors || !(0..cloud.len()).any(sparse) {
         return Vec::new();
     }
     let tree = BallTree::new(cloud.dimension(), cloud.coordinates());
     let found = tree.nearest_of_each(
-        NEIGHBORS,
+        tuning.neighbors,
         |at| sparse(at as usize),
         execute,
         |at, near| {
             let at = at as usize;
             let crowding = near.iter().map(|x| spacing.crowding(x.index() as usize));
             let mean = (spacing.crowding(at) + crowding.sum::<f64>()) / (near.len() + 1) as f64;
-            let fills = mean > CROWDED && is_thick(cloud, near);
+            let fills = mean > tuning.crowded && is_thick(cloud, near, tuning.thick);
             fills.then(|| (at, spacing.raw(at) / spacing.median()))
         },
     );
     found.into_iter().flatten().collect()
 }
 
-/// Whether points are on no sheet.
-fn is_thick(cloud: &PointCloud<f64>, near: &[Near]) -> bool {
+/// Whether points are on no sheet: they are as far from one as the given share of its extent.
+fn is_thick(cloud: &PointCloud<f64>, near: &[Near], thick: f64) -> bool {
     let mut near = near.to_vec();
     near.sort_unstable();
     let rows = || near.iter().map(|x| cloud.point(x.index() as usize));
@@ -60,5 +53,5 @@ fn is_thick(cloud: &PointCloud<f64>, near: &[Near]) -> bool {
         .map(|x| fit.distance(x, f64::INFINITY, &mut offset))
         .collect();
     distances.sort_unstable_by(f64::total_cmp);
-    MEDIAN_TO_SCALE * distances[distances.len() / 2] > THICK * fit.extent()
+    MEDIAN_TO_SCALE * distances[distances.len() / 2] > thick * fit.extent()
 }

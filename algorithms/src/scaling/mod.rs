@@ -45,7 +45,7 @@ mod tests {
     use super::*;
     use crate::execute::Serial;
     use crate::metric::{Euclidean, GivenDistances};
-    use crosscap_core::{MetricSpace, SparseDistances};
+    use crosscap_core::{MetricSpace, Row, SparseDistances};
     use proptest::prelude::*;
 
     /// Points of a bumpy sheet in R^n, turned out of the axes.
@@ -61,9 +61,12 @@ mod tests {
         PointCloud::new(n, rows.collect()).unwrap()
     }
 
-    fn near(cloud: &PointCloud<f64>, radius: f64) -> SparseDistances<f64> {
-        let pairs = (0..cloud.len()).flat_map(|a| (0..a).map(move |b| (a as u32, b as u32)));
-        let all = pairs.map(|(a, b)| (a, b, cloud.squared_distance(a as usize, b as usize).sqrt()));
+    fn near(cloud: &PointCloud<f64>, radius: f64) -> SparseDistances<f64, Row> {
+        let pairs = (0..cloud.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let all = pairs.map(|(a, b)| {
+            let d = cloud.squared_distance(a, b).sqrt();
+            (Row::new(a), Row::new(b), d)
+        });
         SparseDistances::new(cloud.len(), all.filter(|x| x.2 < radius)).unwrap()
     }
 
@@ -104,9 +107,9 @@ mod tests {
         let picture = picture_of_metric(&circle, 2).unwrap();
         assert!(picture.places.dimension() <= 2);
         assert!(picture.deviation >= 0.1, "{}", picture.deviation);
-        let d = |a: u32, b: u32| circle.distance(a as usize, b as usize);
-        let pairs = (0..n as u32).flat_map(|a| (0..a).map(move |b| (a, b)));
-        let known = pairs.map(|(a, b)| (a, b, d(a, b))).filter(|x| x.2 < 12.0);
+        let pairs = (0..n).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let known = pairs.map(|(a, b)| (Row::new(a), Row::new(b), circle.distance(a, b)));
+        let known = known.filter(|x| x.2 < 12.0);
         let known = SparseDistances::new(n, known).unwrap();
         let by_near = scale_patches(&known, &Serial);
         assert!(by_near.is_err() || by_near.unwrap().deviation > 0.1);

@@ -2,7 +2,7 @@
 
 use super::{Scaled, pivots::PivotFrame};
 use crate::execute::{self, Execute};
-use crosscap_core::{Error, PointCloud, SparseDistances};
+use crosscap_core::{Error, PointCloud, Row, SparseDistances, Table};
 use nalgebra::DMatrix;
 
 /// Points of a patch that are scaled; the others are placed by their distances to these.
@@ -27,21 +27,24 @@ const LEAST_EXTENT: f64 = 1e-5;
 /// ```
 /// use crosscap_algorithms::execute::Serial;
 /// use crosscap_algorithms::scaling::scale_patches;
-/// use crosscap_core::{PointCloud, SparseDistances};
+/// use crosscap_core::{PointCloud, Row, SparseDistances};
 /// let rows = (0..400).flat_map(|k| {
 ///     let (u, v) = (f64::from(k % 20), f64::from(k / 20));
 ///     [u, v, (0.3 * u).sin() + (0.4 * v).cos()]
 /// });
 /// let cloud = PointCloud::new(3, rows.collect())?;
 /// let pairs = (0..400).flat_map(|a| (0..a).map(move |b| (a, b)));
-/// let near = pairs.map(|(a, b)| (a as u32, b as u32, cloud.squared_distance(a, b).sqrt()));
+/// let near = pairs.map(|(a, b)| (Row::new(a), Row::new(b), cloud.squared_distance(a, b).sqrt()));
 /// let known = SparseDistances::new(400, near.filter(|x| x.2 < 6.0))?;
 /// let scaled = scale_patches(&known, &Serial)?;
 /// assert_eq!(scaled.places.dimension(), 3);
 /// assert!(scaled.deviation < 1e-8);
 /// # Ok::<(), crosscap_core::Error>(())
 /// ```
-pub fn scale_patches(known: &SparseDistances<f64>, execute: &dyn Execute) -> Result<Scaled, Error> {
+pub fn scale_patches(
+    known: &SparseDistances<f64, Row>,
+    execute: &dyn Execute,
+) -> Result<Scaled, Error> {
     let n = known.len();
     if n == 0 {
         return Err(Error::Shape {
@@ -61,7 +64,7 @@ pub fn scale_patches(known: &SparseDistances<f64>, execute: &dyn Execute) -> Res
     if let Some(point) = placed.iter().position(|p| !p) {
         return Err(Error::SparseNeighborhood {
             point,
-            found: known.row(point as u32).count() + 1,
+            found: known.row(Row::new(point)).count() + 1,
             needed: width + 1 + SPARE,
             parameter: "the number of distances given",
         });
@@ -72,8 +75,8 @@ pub fn scale_patches(known: &SparseDistances<f64>, execute: &dyn Execute) -> Res
         n,
         || (),
         |(), i| {
-            let row = known.row(i as u32);
-            row.map(|(j, d)| (d - places.squared_distance(i, j as usize).sqrt()).abs())
+            let row = known.row(Row::new(i));
+            row.map(|(j, d)| (d - places.squared_distance(i, j.index()).sqrt()).abs())
                 .fold(0.0, f64::max)
         },
     );
@@ -84,23 +87,23 @@ pub fn scale_patches(known: &SparseDistances<f64>, execute: &dyn Execute) -> Res
 }
 
 /// The radius up to which distances from a point are taken as known.
-fn reach(known: &SparseDistances<f64>, point: u32) -> f64 {
+fn reach(known: &SparseDistances<f64, Row>, point: Row) -> f64 {
     known.row(point).map(|x| x.1).fold(0.0, f64::max)
 }
 
 /// Centers of patches whose quarter balls hold every point.
-fn cover(known: &SparseDistances<f64>) -> Vec<u32> {
-    let mut held = vec![false; known.len()];
+fn cover(known: &SparseDistances<f64, Row>) -> Vec<Row> {
+    let mut held: Table<Row, bool> = Table::filled(known.len(), false);
     let mut centers = Vec::new();
-    for i in 0..known.len() as u32 {
-        if held[i as usize] {
+    for i in held.ids() {
+        if held[i] {
             continue;
         }
         centers.push(i);
-        held[i as usize] = true;
+        held[i] = true;
         let limit = 0.25 * reach(known, i);
         for (j, d) in known.row(i) {
-            held[j as usize] |= d <= limit;
+            held[j] |= d <= limit;
         }
     }
     centers
@@ -108,30 +111,30 @@ fn cover(known: &SparseDistances<f64>) -> Vec<u32> {
 
 /// Points with places of their own.
 struct Patch {
-    members: Vec<u32>,
+    members: Vec<Row>,
     frame: PivotFrame,
     places: Vec<f64>,
 }
 
 impl Patch {
-    fn new(known: &SparseDistances<f64>, center: u32) -> Self {
+    fn new(known: &SparseDistances<f64, Row>, center: Row) -> Self {
         let limit = 0.5 * reach(known, center);
-        let mut near: Vec<(f64, u32)> = (known.row(center).filter(|x| x.1 <= limit))
+        let mut near: Vec<(f64, Row)> = (known.row(center).filter(|x| x.1 <= limit))
             .map(|(j, d)| (d, j))
             .collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let others = near.into_iter().map(|x| x.1);
-        let mut members: Vec<u32> = std::iter::once(center).chain(others).collect();
+        let mut members: Vec<Row> = std::iter::once(center).chain(others).collect();
         // Every few by distance, each with all distances to those before.
         let stride = members.len().div_ceil(PIVOTS).max(1);
-        let mut pivots: Vec<u32> = Vec::with_capacity(PIVOTS);
+        let mut pivots: Vec<Row> = Vec::with_capacity(PIVOTS);
         for &j in members.iter().step_by(stride) {
             if pivots.iter().all(|&p| known.get(p, j).is_some()) {
                 pivots.push(j);
             }
         }
         members.retain(|&j| pivots.iter().all(|&p| known.get(p, j).is_some()));
-        let square = |a: u32, b: u32| known.get(a, b).map_or(0.0, |d| d * d);
+        let square = |a: Row, b: Row| known.get(a, b).map_or(0.0, |d| d * d);
         let frame = PivotFrame::of(pivots.len(), super::MOST_DIMENSIONS, |a, b| {
             square(pivots[a], pivots[b])
         });
@@ -169,10 +172,10 @@ impl Patch {
 fn lay(n: usize, width: usize, patches: &[Patch]) -> (Vec<f64>, Vec<bool>) {
     let mut places = vec![0.0; n * width];
     let mut placed = vec![false; n];
-    let mut patches_of: Vec<Vec<u32>> = vec![Vec::new(); n];
+    let mut patches_of: Table<Row, Vec<u32>> = Table::filled(n, Vec::new());
     for (p, patch) in patches.iter().enumerate() {
         for &j in &patch.members {
-            patches_of[j as usize].push(p as u32);
+            patches_of[j].push(p as u32);
         }
     }
     // Number of placed members of every patch, and those patches by it.
@@ -215,21 +218,20 @@ fn lay(n: usize, width: usize, patches: &[Patch]) -> (Vec<f64>, Vec<bool>) {
         };
         laid[p] = true;
         for (k, &j) in patch.members.iter().enumerate() {
-            let j = j as usize;
-            if placed[j] {
+            if placed[j.index()] {
                 continue;
             }
-            placed[j] = true;
+            placed[j.index()] = true;
             for r in 0..width {
                 let turned = (0..width).map(|c| turn[(r, c)] * (patch.at(k, c) - from[c]));
-                places[j * width + r] = to[r] + turned.sum::<f64>();
+                places[j.index() * width + r] = to[r] + turned.sum::<f64>();
             }
             for &other in &patches_of[j] {
                 common[other as usize] += 1;
             }
         }
         for &j in &patch.members {
-            for &other in &patches_of[j as usize] {
+            for &other in &patches_of[j] {
                 let other = other as usize;
                 if !laid[other] && tried[other] != common[other] {
                     queue.push((common[other], std::cmp::Reverse(other)));
@@ -246,7 +248,7 @@ type Motion = (DMatrix<f64>, Vec<f64>, Vec<f64>);
 /// The motion that lays a patch onto the places of its members; `None` where these do not decide it.
 fn motion(patch: &Patch, width: usize, places: &[f64], placed: &[bool]) -> Option<Motion> {
     let common: Vec<(usize, usize)> = (patch.members.iter().enumerate())
-        .map(|(k, &j)| (k, j as usize))
+        .map(|(k, &j)| (k, j.index()))
         .filter(|&(_, j)| placed[j])
         .collect();
     let own = patch.width();

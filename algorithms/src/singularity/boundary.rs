@@ -4,7 +4,9 @@ use super::envelope::Envelope;
 use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::tolerance::{Tolerance, at_least, vectors};
 use crate::tuning::BoundaryTuning;
-use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{
+    Decomposition, Error, Label, LocalPoints, Rejection, SingularityModel, Stratum,
+};
 use nalgebra::{Matrix2, Vector2, Vector3};
 use std::f64::consts::PI;
 
@@ -112,6 +114,70 @@ fn area_beyond(envelope: &Envelope, radius: f64) -> f64 {
         .sum()
 }
 
+impl Boundary {
+    /// The parabola that no point lies beyond, upright over the place of it nearest to the center, where enough points
+    /// are missing behind it.
+    fn rim(
+        &self,
+        points: &[Vector3<f64>],
+        center: &Vector3<f64>,
+        radius: f64,
+    ) -> Result<(Axes, Envelope), Rejection> {
+        let mut axes = Axes::new([center.x, center.y], [center.x, center.y]);
+        let upright = |axes: &Axes| {
+            let flat: Vec<[f64; 2]> = points.iter().map(|x| axes.plane(x)).collect();
+            Envelope::above(&flat, radius).ok_or(Rejection::NoRealSolution)
+        };
+        let mut envelope = upright(&axes)?;
+        for _ in 0..ROUNDS {
+            let slope = envelope.slope(envelope.foot([0.0, 0.0]));
+            let out = [0, 1].map(|k| axes.out[k] - slope * axes.along[k]);
+            axes = Axes::new(axes.origin, out);
+            envelope = upright(&axes)?;
+        }
+        if envelope.bend().abs() * radius > self.tuning.bend {
+            return Err(Rejection::NoRealSolution);
+        }
+        let beyond = area_beyond(&envelope, radius);
+        let inside = PI * radius * radius - beyond;
+        let missing = points.len() as f64 * beyond / inside.max(f64::MIN_POSITIVE);
+        if missing < self.tuning.missing {
+            return Err(Rejection::EmptyStratum {
+                stratum: 0,
+                found: 0,
+            });
+        }
+        Ok((axes, envelope))
+    }
+
+    /// The sheet through the points, with what it leaves; the center is on it.
+    fn sheet(
+        &self,
+        points: &[Vector3<f64>],
+        center: &Vector3<f64>,
+        radius: f64,
+    ) -> Result<(QuadraticPatch, f64), Rejection> {
+        let mut sheet =
+            QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
+        if !sheet.fit(points.iter().copied(), radius) {
+            return Err(Rejection::NoRealSolution);
+        }
+        let sum = points
+            .iter()
+            .map(|x| sheet.signed_distance(x).powi(2))
+            .sum();
+        let residual = self.tolerance.residual(sum, points.len())?;
+        let off = sheet.signed_distance(center).abs();
+        if off >= self.tolerance.ep {
+            return Err(Rejection::PoorFit {
+                residual: off,
+                limit: self.tolerance.ep,
+            });
+        }
+        Ok((sheet, residual))
+    }
+}
+
 impl SingularityModel for Boundary {
     fn local_dimension(&self) -> usize {
         3
@@ -142,47 +208,8 @@ impl SingularityModel for Boundary {
                 found: 0,
             });
         }
-        let mut axes = Axes::new([center.x, center.y], [center.x, center.y]);
-        let upright = |axes: &Axes| {
-            let flat: Vec<[f64; 2]> = points.iter().map(|x| axes.plane(x)).collect();
-            Envelope::above(&flat, local.radius).ok_or(Rejection::NoRealSolution)
-        };
-        let mut envelope = upright(&axes)?;
-        for _ in 0..ROUNDS {
-            let slope = envelope.slope(envelope.foot([0.0, 0.0]));
-            let out = [0, 1].map(|k| axes.out[k] - slope * axes.along[k]);
-            axes = Axes::new(axes.origin, out);
-            envelope = upright(&axes)?;
-        }
-        if envelope.bend().abs() * local.radius > self.tuning.bend {
-            return Err(Rejection::NoRealSolution);
-        }
-        let beyond = area_beyond(&envelope, local.radius);
-        let inside = PI * local.radius * local.radius - beyond;
-        let missing = count as f64 * beyond / inside.max(f64::MIN_POSITIVE);
-        if missing < self.tuning.missing {
-            return Err(Rejection::EmptyStratum {
-                stratum: 0,
-                found: 0,
-            });
-        }
-        let mut sheet =
-            QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
-        if !sheet.fit(points.iter().copied(), local.radius) {
-            return Err(Rejection::NoRealSolution);
-        }
-        let sum = points
-            .iter()
-            .map(|x| sheet.signed_distance(x).powi(2))
-            .sum();
-        let residual = self.tolerance.residual(sum, count)?;
-        let off = sheet.signed_distance(&center).abs();
-        if off >= self.tolerance.ep {
-            return Err(Rejection::PoorFit {
-                residual: off,
-                limit: self.tolerance.ep,
-            });
-        }
+        let (axes, envelope) = self.rim(points, &center, local.radius)?;
+        let (sheet, residual) = self.sheet(points, &center, local.radius)?;
         // Beyond the neighborhood the parabola is mere extrapolation.
         let labels: Vec<u8> = all
             .iter()
@@ -210,7 +237,7 @@ impl SingularityModel for Boundary {
             };
         Ok(Decomposition {
             strata: [1, 2].map(|dimension| Stratum { dimension }).to_vec(),
-            labels,
+            labels: labels.into_iter().map(Label::from).collect(),
             cells_at_curve: vec![1],
             residual,
             parameters: 11,

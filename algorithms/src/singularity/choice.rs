@@ -1,7 +1,7 @@
 //! Singularity models by name.
 
 use super::{
-    BareCurve, Boundary, CrossingEnd, CurveOnSheet, CurveThroughSheet, IsolatedCrossing,
+    BareCurve, Book, BookEnd, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing,
     PinchPoint, TriplePoint, TwoPlanes, YJunction,
 };
 use crate::tuning::ModelTuning;
@@ -41,8 +41,10 @@ pub enum ModelName {
     CurveOnSheet,
     /// [`PinchPoint`].
     PinchPoint,
-    /// [`CrossingEnd`].
-    CrossingEnd,
+    /// [`Book`].
+    Book,
+    /// [`BookEnd`].
+    BookEnd,
 }
 
 /// Rounds of the refinement by equation (5).
@@ -50,7 +52,7 @@ const REFINEMENT_ROUNDS: usize = 20;
 
 impl ModelName {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::TwoPlanes,
         Self::RefinedTwoPlanes,
         Self::Boundary,
@@ -61,11 +63,12 @@ impl ModelName {
         Self::CurveThroughSheet,
         Self::CurveOnSheet,
         Self::PinchPoint,
-        Self::CrossingEnd,
+        Self::Book,
+        Self::BookEnd,
     ];
 
     /// Those that compete where the user leaves the choice to the program.
-    pub const AUTO: [Self; 10] = [
+    pub const AUTO: [Self; 11] = [
         Self::TwoPlanes,
         Self::Boundary,
         Self::YJunction,
@@ -75,7 +78,8 @@ impl ModelName {
         Self::CurveThroughSheet,
         Self::CurveOnSheet,
         Self::PinchPoint,
-        Self::CrossingEnd,
+        Self::Book,
+        Self::BookEnd,
     ];
 
     /// The name on the command line and in reports.
@@ -91,7 +95,8 @@ impl ModelName {
             Self::CurveThroughSheet => "curve-through-sheet",
             Self::CurveOnSheet => "curve-on-sheet",
             Self::PinchPoint => "pinch-point",
-            Self::CrossingEnd => "crossing-end",
+            Self::Book => "book",
+            Self::BookEnd => "book-end",
         }
     }
 
@@ -133,8 +138,9 @@ impl ModelName {
             Self::CurveOnSheet => {
                 Box::new(CurveOnSheet::new(dp, ep)?.tuned(tuning.curve_and_sheet))
             }
-            Self::PinchPoint => Box::new(PinchPoint::new(dp, ep)?),
-            Self::CrossingEnd => Box::new(CrossingEnd::new(dp, ep)?),
+            Self::PinchPoint => Box::new(PinchPoint::new(dp, ep)?.tuned(tuning.pinch_point)),
+            Self::Book => Box::new(Book::new(dp, ep)?.tuned(tuning.book)),
+            Self::BookEnd => Box::new(BookEnd::new(dp, ep)?.tuned(tuning.book_end)),
         })
     }
 }

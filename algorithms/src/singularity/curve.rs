@@ -2,7 +2,9 @@
 
 use super::curve_fit::QuadraticCurve;
 use super::tolerance::{Tolerance, at_least, vectors};
-use crosscap_core::{Decomposition, Error, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{
+    Decomposition, Error, Label, LocalPoints, Rejection, SingularityModel, Stratum,
+};
 use nalgebra::Vector3;
 
 /// A curve by itself: the neighborhood is 1-dimensional. Where the data are of mixed dimension the
@@ -12,7 +14,7 @@ pub struct BareCurve {
     tolerance: Tolerance,
 }
 
-/// Fewest points.
+/// Fewest points: a curve of two quadratic heights has six coefficients.
 const LEAST_POINTS: usize = 6;
 
 impl BareCurve {
@@ -57,7 +59,7 @@ impl SingularityModel for BareCurve {
         let foot = curve.foot(&center);
         Ok(Decomposition {
             strata: vec![Stratum { dimension: 1 }],
-            labels: vec![0; all.len()],
+            labels: vec![Label::new(0); all.len()],
             cells_at_curve: vec![0],
             residual,
             parameters: 8,

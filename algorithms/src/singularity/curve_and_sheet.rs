@@ -8,7 +8,7 @@ use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crate::tuning::CurveAndSheetTuning;
 use crosscap_core::{
-    Decomposition, Error, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
+    Decomposition, Error, Label, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
 };
 use nalgebra::Vector3;
 use std::cell::RefCell;
@@ -133,6 +133,117 @@ thread_local! {
     static LAST: RefCell<Option<Kept>> = const { RefCell::new(None) };
 }
 
+/// Whether one sheet holds nearly all points, as it mostly does.
+fn one_sheet_holds(points: &[Vector3<f64>], radius: f64, ep: f64) -> bool {
+    let mut single =
+        QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
+    single.fit(points.iter().copied(), radius);
+    let off = off_sheet(&single, points, ep);
+    off.len() < STRAIGHT_POINTS && off_sheet(&single, points, 2.0 * ep).is_empty()
+}
+
+/// The plane that most points lie near, of those normal to gradients of two quadrics and of the `whole` neighborhood.
+fn first_plane(
+    points: &[Vector3<f64>],
+    whole: Flat<3>,
+    tuning: &CurveAndSheetTuning,
+    radius: f64,
+) -> Result<Flat<3>, Rejection> {
+    let quadrics = Vanishing::fit(points, 2, 2, radius).ok_or(Rejection::NoRealSolution)?;
+    let mut found = candidates(points, |x, out| quadrics.gradients(x, out));
+    // With few points on the curve the gradients say little, but then the sheet holds nearly all.
+    found.push(whole);
+    for plane in &mut found {
+        plane.normals.truncate(1);
+    }
+    greedy(points, &found, 1, tuning.plane * radius)
+        .and_then(|mut planes| planes.pop())
+        .ok_or(Rejection::NoRealSolution)
+}
+
+/// Rounds of fitting sheet and curve, the first of the sheet alone.
+const ROUNDS: usize = 4;
+
+/// The patch over a plane and the curve of the points off it, fitted in turn.
+fn sheet_and_curve(
+    points: &[Vector3<f64>],
+    plane: &Flat<3>,
+    conditions: &Conditions,
+    radius: f64,
+) -> Result<(QuadraticPatch, QuadraticCurve), Rejection> {
+    let (ep, tuning) = (conditions.tolerance.ep, &conditions.tuning);
+    let mut sheet = patch_over(plane);
+    let mut curve: Option<QuadraticCurve> = None;
+    for round in 0..ROUNDS {
+        // The first plane may be tilted by points of the curve: its sheet is taken thicker.
+        let thickness = if round == 0 {
+            ep.max(tuning.plane * radius)
+        } else {
+            ep
+        };
+        // Points of the curve that are near the sheet would bend it.
+        let near: Vec<Vector3<f64>> = points
+            .iter()
+            .filter(|x| {
+                let clear = |c: &QuadraticCurve| (c.foot(x) - **x).norm() > tuning.clear * ep;
+                sheet.signed_distance(x).abs() < thickness && curve.as_ref().is_none_or(clear)
+            })
+            .copied()
+            .collect();
+        // Over the plane of its own points: heights are then small, and exact where the sheet is flat.
+        if let Some(plane) = Flat::of(near.iter().copied()) {
+            sheet = patch_over(&plane);
+        }
+        if !sheet.fit(near.iter().copied(), radius) {
+            return Err(Rejection::EmptyStratum {
+                stratum: 3,
+                found: near.len(),
+            });
+        }
+        let steepest = |x: &Vector3<f64>| sheet.height(x).1.norm() > tuning.steepest;
+        if near.iter().any(steepest) {
+            return Err(Rejection::NoRealSolution);
+        }
+        if round == 0 {
+            continue;
+        }
+        let beside = off_sheet(&sheet, points, ep);
+        curve = Some(QuadraticCurve::fit(&beside).ok_or(Rejection::EmptyStratum {
+            stratum: 1,
+            found: beside.len(),
+        })?);
+    }
+    Ok((sheet, curve.ok_or(Rejection::NoRealSolution)?))
+}
+
+/// Where a curve meets a sheet, by Newton's method from the place of the curve nearest to the center.
+fn meeting(
+    sheet: &QuadraticPatch,
+    curve: &QuadraticCurve,
+    center: &Vector3<f64>,
+    tuning: &CurveAndSheetTuning,
+    radius: f64,
+) -> Option<Vector3<f64>> {
+    let mut t = curve.parameter(center);
+    let mut height = f64::INFINITY;
+    for _ in 0..12 {
+        let x = curve.at(t);
+        let (value, gradient) = sheet.height(&x);
+        let slope = gradient.dot(&curve.tangent(t));
+        if slope.abs() < tuning.sine * gradient.norm() {
+            return None;
+        }
+        t -= value / slope;
+        height = value.abs();
+        if !t.is_finite() || t.abs() > 4.0 * radius {
+            return None;
+        }
+    }
+    let apex = curve.at(t);
+    let far = height > 1e-6 * radius || (apex - center).norm() > tuning.reach * radius;
+    (!far).then_some(apex)
+}
+
 impl Fit {
     fn of(local: &LocalPoints<'_>, conditions: &Conditions) -> Result<Self, Rejection> {
         LAST.with_borrow_mut(|last| {
@@ -160,71 +271,15 @@ impl Fit {
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
         let whole = Flat::of(points.iter().copied()).ok_or(Rejection::NoRealSolution)?;
-        // The usual case is decided here: one sheet holds all.
-        let mut single =
-            QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
-        single.fit(points.iter().copied(), local.radius);
-        let off = off_sheet(&single, points, ep);
-        if off.len() < STRAIGHT_POINTS && off_sheet(&single, points, 2.0 * ep).is_empty() {
+        if one_sheet_holds(points, local.radius, ep) {
             return Err(Rejection::SimplerModelFits {
                 residual: ep,
                 simpler: ep,
             });
         }
-        let quadrics =
-            Vanishing::fit(points, 2, 2, local.radius).ok_or(Rejection::NoRealSolution)?;
-        let mut found = candidates(points, |x, out| quadrics.gradients(x, out));
-        // With few points on the curve the gradients say little, but then the sheet holds nearly all.
-        found.push(whole);
-        for plane in &mut found {
-            plane.normals.truncate(1);
-        }
-        let plane = greedy(points, &found, 1, tuning.plane * local.radius)
-            .and_then(|mut planes| planes.pop())
-            .ok_or(Rejection::NoRealSolution)?;
-        let mut sheet = patch_over(&plane);
-        let mut curve: Option<QuadraticCurve> = None;
-        for round in 0..4 {
-            // The first plane may be tilted by points of the curve: its sheet is taken thicker.
-            let thickness = if round == 0 {
-                ep.max(tuning.plane * local.radius)
-            } else {
-                ep
-            };
-            // Points of the curve that are near the sheet would bend it.
-            let near: Vec<Vector3<f64>> = points
-                .iter()
-                .filter(|x| {
-                    let clear = |c: &QuadraticCurve| (c.foot(x) - **x).norm() > tuning.clear * ep;
-                    sheet.signed_distance(x).abs() < thickness && curve.as_ref().is_none_or(clear)
-                })
-                .copied()
-                .collect();
-            // Over the plane of its own points: heights are then small, and exact where the sheet is flat.
-            if let Some(plane) = Flat::of(near.iter().copied()) {
-                sheet = patch_over(&plane);
-            }
-            if !sheet.fit(near.iter().copied(), local.radius) {
-                return Err(Rejection::EmptyStratum {
-                    stratum: 3,
-                    found: near.len(),
-                });
-            }
-            let steepest = |x: &Vector3<f64>| sheet.height(x).1.norm() > tuning.steepest;
-            if near.iter().any(steepest) {
-                return Err(Rejection::NoRealSolution);
-            }
-            if round == 0 {
-                continue;
-            }
-            let beside = off_sheet(&sheet, points, ep);
-            curve = Some(QuadraticCurve::fit(&beside).ok_or(Rejection::EmptyStratum {
-                stratum: 1,
-                found: beside.len(),
-            })?);
-        }
+        let plane = first_plane(points, whole, tuning, local.radius)?;
+        let (sheet, curve) = sheet_and_curve(points, &plane, conditions, local.radius)?;
         let beside = off_sheet(&sheet, points, ep);
-        let curve = curve.ok_or(Rejection::NoRealSolution)?;
         // The center need not be among the points that were fitted.
         let center = all[local.center];
         let astray = off_sheet(&sheet, &[center], ep)
@@ -238,25 +293,8 @@ impl Fit {
                 limit: ep,
             });
         }
-        let mut t = curve.parameter(&center);
-        let mut height = f64::INFINITY;
-        for _ in 0..12 {
-            let x = curve.at(t);
-            let (value, gradient) = sheet.height(&x);
-            let slope = gradient.dot(&curve.tangent(t));
-            if slope.abs() < tuning.sine * gradient.norm() {
-                return Err(Rejection::NoRealSolution);
-            }
-            t -= value / slope;
-            height = value.abs();
-            if !t.is_finite() || t.abs() > 4.0 * local.radius {
-                return Err(Rejection::NoRealSolution);
-            }
-        }
-        let apex = curve.at(t);
-        if height > 1e-6 * local.radius || (apex - center).norm() > tuning.reach * local.radius {
-            return Err(Rejection::NoRealSolution);
-        }
+        let apex = meeting(&sheet, &curve, &center, tuning, local.radius)
+            .ok_or(Rejection::NoRealSolution)?;
         let mut labels = vec![0u8; all.len()];
         let mut arcs = [0usize; 2];
         let mut sum = 0.0;
@@ -315,7 +353,7 @@ impl Fit {
             labels: self
                 .labels
                 .iter()
-                .map(|&l| relabel[usize::from(l)])
+                .map(|&l| Label::from(relabel[usize::from(l)]))
                 .collect(),
             cells_at_curve: vec![0; usize::from(arcs)],
             residual: self.residual,

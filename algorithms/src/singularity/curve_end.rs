@@ -1,22 +1,19 @@
 //! What the models of the ends of double curves have in common: when they are believed, and what they say of rows.
 
 use super::patch::off_one_sheet;
-use crosscap_core::{Decomposition, LocalPoints, Located, Rejection, Stratum};
+use crate::tuning::CurveEndTuning;
+use crosscap_core::{Decomposition, Label, LocalPoints, Located, Rejection, Stratum};
 use nalgebra::Vector3;
 
-/// Greatest share of the points farther than ep from the surface.
-const MOST_ASTRAY: f64 = 0.03;
-/// The surface must be followed this much better than by one quadratic patch.
-const GAIN: f64 = 0.5;
-/// The end lies within this share of the radius.
-pub(super) const REACH: f64 = 0.7;
-/// A point off the curves tells where they are up to this many ep.
-const WITNESS_REACH: f64 = 3.0;
-
 /// Refuses a fit that is not much better than one quadratic patch.
-pub(super) fn gains(residual: f64, points: &[Vector3<f64>], radius: f64) -> Result<(), Rejection> {
+pub(super) fn gains(
+    residual: f64,
+    points: &[Vector3<f64>],
+    radius: f64,
+    tuning: &CurveEndTuning,
+) -> Result<(), Rejection> {
     let simpler = off_one_sheet(points, radius);
-    match residual > GAIN * simpler {
+    match residual > tuning.gain * simpler {
         true => Err(Rejection::SimplerModelFits { residual, simpler }),
         false => Ok(()),
     }
@@ -27,8 +24,9 @@ pub(super) fn follows(
     off: impl ExactSizeIterator<Item = f64>,
     residual: f64,
     ep: f64,
+    tuning: &CurveEndTuning,
 ) -> Result<(), Rejection> {
-    let most = MOST_ASTRAY * off.len() as f64;
+    let most = tuning.astray * off.len() as f64;
     match off.filter(|&d| d > ep).count() as f64 > most {
         true => Err(Rejection::PoorFit {
             residual,
@@ -41,11 +39,11 @@ pub(super) fn follows(
 /// A neighborhood of the end of a double curve, with what was fitted to it.
 pub(super) trait CurveEnd {
     /// Dimension of the stratum of every label.
-    const STRATA: &'static [u8];
+    fn strata(&self) -> &[u8];
     /// How many cells meet at the strata that are curves, by label.
-    const CELLS: &'static [u8];
+    fn cells(&self) -> &[u8];
     /// Numbers that were fitted.
-    const PARAMETERS: usize;
+    fn parameters(&self) -> usize;
 
     /// The points.
     fn points(&self) -> &[Vector3<f64>];
@@ -55,16 +53,18 @@ pub(super) trait CurveEnd {
     fn residual(&self) -> f64;
     /// Curve tolerance.
     fn ep(&self) -> f64;
+    /// A point off the curves tells where they are up to this many ep.
+    fn witness(&self) -> f64;
     /// Label of a row, the nearest place on a curve, and how many cells meet there.
     fn locate(&self, row: usize) -> (u8, Vector3<f64>, u8);
 
     /// What is said of a row: a place on a curve where it is on one or near one.
     fn located(&self, row: usize) -> Located {
         let (label, place, cells) = self.locate(row);
-        let dimension = Self::STRATA[usize::from(label)];
+        let dimension = self.strata()[usize::from(label)];
         let own = self.points()[row];
         let offset = (place - own).norm();
-        let (place, offset) = match dimension < 2 || offset < WITNESS_REACH * self.ep() {
+        let (place, offset) = match dimension < 2 || offset < self.witness() * self.ep() {
             true => (place, offset),
             false => (own, f64::INFINITY),
         };
@@ -84,13 +84,15 @@ pub(super) trait CurveEnd {
     ) -> (Decomposition, Vec<Option<Located>>) {
         let center = self.located(local.center);
         let located = rows.iter().map(|&row| Some(self.located(row))).collect();
-        let strata = Self::STRATA.iter();
+        let strata = self.strata().iter();
         let decomposition = Decomposition {
             strata: strata.map(|&dimension| Stratum { dimension }).collect(),
-            labels: (0..local.len()).map(|row| self.locate(row).0).collect(),
-            cells_at_curve: Self::CELLS.to_vec(),
+            labels: (0..local.len())
+                .map(|row| Label::from(self.locate(row).0))
+                .collect(),
+            cells_at_curve: self.cells().to_vec(),
             residual: self.residual(),
-            parameters: Self::PARAMETERS,
+            parameters: self.parameters(),
             points: vec![self.end().iter().copied().collect()],
             center: center.place,
             center_offset: center.offset,

@@ -1,13 +1,13 @@
 //! Two sheets of R^4 that have one point in common.
 
-use super::flats::{candidates, greedy};
+use super::flats::{Flat, candidates, greedy};
 use super::patch::PATCH_POINTS;
 use super::sheet_in_four::SheetInFour;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crate::tuning::IsolatedCrossingTuning;
 use crosscap_core::{
-    Decomposition, Error, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
+    Decomposition, Error, Label, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
 };
 use nalgebra::{Matrix4, Vector4};
 
@@ -86,6 +86,63 @@ fn meet(
     None
 }
 
+/// Two sheets over two planes, bent to the first `count` points, and which of them every point is nearer to.
+fn sheets(
+    planes: &[Flat<4>],
+    all: &[Vector4<f64>],
+    count: usize,
+    radius: f64,
+) -> ([SheetInFour; 2], Vec<u8>) {
+    let mut sheets = [
+        SheetInFour::plane(&planes[0]),
+        SheetInFour::plane(&planes[1]),
+    ];
+    let assign = |sheets: &[SheetInFour; 2]| -> Vec<u8> {
+        all.iter()
+            .map(|x| u8::from(sheets[1].distance(x) < sheets[0].distance(x)))
+            .collect()
+    };
+    let mut owner = assign(&sheets);
+    for _ in 0..ROUNDS {
+        for (k, sheet) in sheets.iter_mut().enumerate() {
+            let own = all[..count]
+                .iter()
+                .zip(&owner)
+                .filter(|&(_, &o)| usize::from(o) == k);
+            sheet.fit(own.map(|(x, _)| *x), radius);
+        }
+        owner = assign(&sheets);
+    }
+    (sheets, owner)
+}
+
+/// The label of every point; of the first `count` how many each sheet holds, and the sum of their squared distances.
+fn labels(
+    sheets: &[SheetInFour; 2],
+    owner: &[u8],
+    all: &[Vector4<f64>],
+    count: usize,
+    ep: f64,
+) -> (Vec<u8>, [usize; 2], f64) {
+    let mut labels = vec![0u8; all.len()];
+    let mut held = [0usize; 2];
+    let mut sum = 0.0;
+    for (k, (x, label)) in all.iter().zip(&mut labels).enumerate() {
+        let own = usize::from(owner[k]);
+        let d = [sheets[0].distance(x), sheets[1].distance(x)];
+        *label = if d[0] < ep && d[1] < ep {
+            0
+        } else {
+            1 + own as u8
+        };
+        if k < count {
+            sum += d[own] * d[own];
+            held[own] += 1;
+        }
+    }
+    (labels, held, sum)
+}
+
 impl SingularityModel for IsolatedCrossing {
     fn local_dimension(&self) -> usize {
         4
@@ -111,26 +168,7 @@ impl SingularityModel for IsolatedCrossing {
         let found = candidates(points, |x, out| quadrics.gradients(x, out));
         let planes = greedy(points, &found, 2, self.tuning.plane * local.radius)
             .ok_or(Rejection::NoRealSolution)?;
-        let mut sheets = [
-            SheetInFour::plane(&planes[0]),
-            SheetInFour::plane(&planes[1]),
-        ];
-        let assign = |sheets: &[SheetInFour; 2]| -> Vec<u8> {
-            all.iter()
-                .map(|x| u8::from(sheets[1].distance(x) < sheets[0].distance(x)))
-                .collect()
-        };
-        let mut owner = assign(&sheets);
-        for _ in 0..ROUNDS {
-            for (k, sheet) in sheets.iter_mut().enumerate() {
-                let own = points
-                    .iter()
-                    .zip(&owner)
-                    .filter(|&(_, &o)| usize::from(o) == k);
-                sheet.fit(own.map(|(x, _)| *x), local.radius);
-            }
-            owner = assign(&sheets);
-        }
+        let (sheets, owner) = sheets(&planes, &all, count, local.radius);
         let center = all[local.center];
         let tuning = &self.tuning;
         let apex = meet(
@@ -140,22 +178,7 @@ impl SingularityModel for IsolatedCrossing {
             tuning.determinant,
         )
         .ok_or(Rejection::NoRealSolution)?;
-        let mut labels = vec![0u8; all.len()];
-        let mut held = [0usize; 2];
-        let mut sum = 0.0;
-        for (k, (x, label)) in all.iter().zip(&mut labels).enumerate() {
-            let own = usize::from(owner[k]);
-            let d = [sheets[0].distance(x), sheets[1].distance(x)];
-            *label = if d[0] < ep && d[1] < ep {
-                0
-            } else {
-                1 + own as u8
-            };
-            if k < count {
-                sum += d[own] * d[own];
-                held[own] += 1;
-            }
-        }
+        let (labels, held, sum) = labels(&sheets, &owner, &all, count, ep);
         let residual = self.tolerance.residual(sum, count)?;
         let least = (self.tuning.sheet_share * count as f64).max(PATCH_POINTS as f64 / 2.0);
         if let Some(stratum) = (0..2).find(|&s| (held[s] as f64) < least) {
@@ -167,7 +190,7 @@ impl SingularityModel for IsolatedCrossing {
         let at_point = labels[local.center] == 0;
         Ok(Decomposition {
             strata: [0, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
-            labels,
+            labels: labels.into_iter().map(Label::from).collect(),
             cells_at_curve: Vec::new(),
             residual,
             parameters: 24,

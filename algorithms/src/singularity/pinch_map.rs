@@ -24,8 +24,6 @@ const LAST_STEPS: usize = 12;
 const STARTS: usize = 2;
 /// The equation puts the pinch point within this many radii of the middle, or does not start anything.
 const START_REACH: f64 = 1.5;
-/// Least sine of the angles between the three leading coefficients.
-const LEAST_SINE: f64 = 0.2;
 
 /// A map (u, v) into space, phi = c + v A + u^2 B + u v C + v^2 D + u^2 v E + u v^2 F + v^3 G.
 ///
@@ -118,14 +116,15 @@ impl PinchMap {
         libm::atan2(across, along)
     }
 
-    /// The length l of z^2 = x^2 y / l; `None` where the leading coefficients are dependent.
-    pub(super) fn natural_length(&self) -> Option<f64> {
+    /// The length l of z^2 = x^2 y / l; `None` where the leading coefficients are dependent: at angles of a smaller sine
+    /// than the `least`.
+    pub(super) fn natural_length(&self, least: f64) -> Option<f64> {
         let [_, a, b, c, ..] = self.coefficients;
         let (x, y) = (a.normalize(), b.normalize());
         let normal = x.cross(&y);
         let sine = normal.norm();
         let out = normal.dot(&c) / sine;
-        (sine > LEAST_SINE && out.abs() > LEAST_SINE * c.norm())
+        (sine > least && out.abs() > least * c.norm())
             .then(|| a.norm_squared() * b.norm() / (out * out))
             .filter(|length| length.is_finite())
     }
@@ -344,7 +343,7 @@ mod tests {
             assert!(square.sqrt() < 1e-3, "{length}: {square:e}");
             let off = (map.point() - Vector3::new(0.1, 0.2, -0.3)).norm();
             assert!(off < 0.01, "{length}: {off}");
-            let found = map.natural_length().unwrap();
+            let found = map.natural_length(0.2).unwrap();
             assert!((found / length - 1.0).abs() < 0.1, "{length}: {found}");
             for x in &points {
                 let place = map.at(map.foot(x));

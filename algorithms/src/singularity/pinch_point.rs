@@ -1,9 +1,10 @@
 //! A double curve that ends inside a sheet.
 
-use super::curve_end::{self, CurveEnd, REACH};
+use super::curve_end::{self, CurveEnd};
 use super::patch::PATCH_POINTS;
 use super::pinch_map::PinchMap;
 use super::tolerance::{Tolerance, at_least, vectors};
+use crate::tuning::PinchPointTuning;
 use crosscap_core::{
     Decomposition, Error, Link, LinkKind, LocalPoints, Located, Rejection, SingularityModel,
 };
@@ -22,19 +23,11 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug)]
 pub struct PinchPoint {
     tolerance: Tolerance,
+    tuning: PinchPointTuning,
 }
 
 /// Sectors of the disc that must all hold points.
 const SECTORS: usize = 8;
-/// Least share of the points of an even spread that a sector holds.
-const LEAST_SECTOR_SHARE: f64 = 0.25;
-/// How far the fold must be followed, in square roots of ep times the natural length of the map: there the
-/// sheet opens wide enough for charts of some four ep to be laid flat across it.
-const FOLD_LENGTH: f64 = 2.5;
-/// How far at least, in ep: as far as a chart of three dl reaches, at some four ep each.
-const LEAST_FOLD: f64 = 14.0;
-/// Least natural length of the map in radii: a map of a shorter one is bent beyond its third order.
-const LEAST_LENGTH: f64 = 0.7;
 
 /// Labels: the point, the double curve, the fold for v above and below 0, then the cells.
 const POINT: u8 = 0;
@@ -58,7 +51,13 @@ impl PinchPoint {
     pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
         Ok(Self {
             tolerance: Tolerance::new(dp, ep)?,
+            tuning: PinchPointTuning::MEASURED,
         })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: PinchPointTuning) -> Self {
+        Self { tuning, ..self }
     }
 
     /// The map of a neighborhood, and the parameters of all its points.
@@ -69,9 +68,9 @@ impl PinchPoint {
         let (map, square) = PinchMap::fit(points, local.radius).ok_or(Rejection::NoRealSolution)?;
         let sum = square * points.len() as f64;
         let residual = self.tolerance.residual(sum, points.len())?;
-        curve_end::gains(residual, points, local.radius)?;
+        curve_end::gains(residual, points, local.radius, &self.tuning.end)?;
         let shift = (map.point() - all[local.center]).norm();
-        if shift > REACH * local.radius {
+        if shift > self.tuning.end.reach * local.radius {
             return Err(Rejection::NoRealSolution);
         }
         let fit = Fit {
@@ -80,10 +79,11 @@ impl PinchPoint {
             all,
             residual,
             ep: self.tolerance.ep,
+            tuning: self.tuning,
         };
         let off = fit.all[..local.fitted].iter().zip(&fit.parameters);
         let off = off.map(|(x, at)| (fit.map.at(*at) - x).norm());
-        curve_end::follows(off, residual, fit.ep)?;
+        curve_end::follows(off, residual, fit.ep, &self.tuning.end)?;
         fit.surrounds(local.fitted, local.radius - shift)?;
         fit.has_room(local.radius, shift)?;
         Ok(fit)
@@ -97,6 +97,7 @@ struct Fit {
     parameters: Vec<[f64; 2]>,
     residual: f64,
     ep: f64,
+    tuning: PinchPointTuning,
 }
 
 impl Fit {
@@ -110,7 +111,7 @@ impl Fit {
             }
         }
         let total: usize = held.iter().sum();
-        let least = LEAST_SECTOR_SHARE * total as f64 / SECTORS as f64;
+        let least = self.tuning.sector_share * total as f64 / SECTORS as f64;
         match held.iter().position(|&h| h as f64 <= least) {
             Some(stratum) => Err(Rejection::EmptyStratum {
                 stratum,
@@ -123,10 +124,11 @@ impl Fit {
     /// Refuses a ball in which the map is bent beyond its order, and one that shows too little of the fold. The
     /// point is `shift` off the center.
     fn has_room(&self, radius: f64, shift: f64) -> Result<(), Rejection> {
-        let length = (self.map.natural_length())
-            .filter(|&length| length >= LEAST_LENGTH * radius)
+        let length = (self.map.natural_length(self.tuning.sine))
+            .filter(|&length| length >= self.tuning.length * radius)
             .ok_or(Rejection::NoRealSolution)?;
-        let needed = (FOLD_LENGTH * (self.ep * length).sqrt()).max(LEAST_FOLD * self.ep);
+        let wide = self.tuning.fold_length * (self.ep * length).sqrt();
+        let needed = wide.max(self.tuning.fold * self.ep);
         if radius - shift < needed {
             return Err(Rejection::NeighborhoodTooSmall {
                 needed: needed + shift,
@@ -137,9 +139,17 @@ impl Fit {
 }
 
 impl CurveEnd for Fit {
-    const STRATA: &'static [u8] = &[0, 1, 1, 1, 2, 2, 2, 2];
-    const CELLS: &'static [u8] = &[4, 2, 2];
-    const PARAMETERS: usize = PinchMap::PARAMETERS;
+    fn strata(&self) -> &[u8] {
+        &[0, 1, 1, 1, 2, 2, 2, 2]
+    }
+
+    fn cells(&self) -> &[u8] {
+        &[4, 2, 2]
+    }
+
+    fn parameters(&self) -> usize {
+        PinchMap::PARAMETERS
+    }
 
     fn points(&self) -> &[Vector3<f64>] {
         &self.all
@@ -155,6 +165,10 @@ impl CurveEnd for Fit {
 
     fn ep(&self) -> f64 {
         self.ep
+    }
+
+    fn witness(&self) -> f64 {
+        self.tuning.end.witness
     }
 
     fn locate(&self, row: usize) -> (u8, Vector3<f64>, u8) {
@@ -246,10 +260,11 @@ mod tests {
             "{:?}",
             fit.points
         );
-        assert_eq!(fit.labels[0], POINT);
+        assert_eq!(fit.labels[0].index(), usize::from(POINT));
         // Two points are in one cell where u and v have the same signs, and there are four cells.
         let mut sides = [None; 4];
-        for (x, &label) in places.chunks_exact(3).zip(&fit.labels) {
+        for (x, label) in places.chunks_exact(3).zip(&fit.labels) {
+            let label = label.index() as u8;
             if label >= FIRST_CELL {
                 let side = (x[0] * x[1] > 0.0, x[1] > 0.0);
                 let known = sides[usize::from(label - FIRST_CELL)].get_or_insert(side);

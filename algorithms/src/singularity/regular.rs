@@ -1,7 +1,7 @@
 //! No singularity: one sheet.
 
 use super::patch::{PATCH_POINTS, QuadraticPatch};
-use crosscap_core::{Decomposition, LocalPoints, Rejection, SingularityModel, Stratum};
+use crosscap_core::{Decomposition, Label, LocalPoints, Rejection, SingularityModel, Stratum};
 use nalgebra::Vector3;
 
 /// One cell, a quadratic patch over the leading principal plane: what every other model
@@ -33,7 +33,7 @@ impl SingularityModel for OneSheet {
         let sum: f64 = distances.iter().map(|d| d * d).sum();
         Ok(Decomposition {
             strata: vec![Stratum { dimension: 2 }],
-            labels: vec![0; local.len()],
+            labels: vec![Label::new(0); local.len()],
             cells_at_curve: Vec::new(),
             residual: (sum / local.fitted as f64).sqrt(),
             parameters: 8,

@@ -2,14 +2,11 @@
 
 use super::envelope::Envelope;
 use super::patch::QuadraticPatch;
+use crate::tuning::RimTuning;
 use crosscap_core::Rejection;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// Points that would have to lie beyond the boundary.
-const LEAST_MISSING: f64 = 10.0;
-/// Greatest curvature of the parabola, in units of one over the radius.
-const MOST_BEND: f64 = 3.0;
 /// Times that the parabola is fitted, each time upright over its own tangent.
 const ROUNDS: usize = 3;
 /// Steps towards the place in which the curve meets the parabola.
@@ -30,7 +27,7 @@ pub(super) struct Rim {
 
 impl Rim {
     /// The boundary of the sheet that holds `points`, within `radius` of the middle; `near` is a place on the curve, `way` its
-    /// direction towards the boundary.
+    /// direction towards the boundary. A sheet on one side of the curve alone is on that of `half`.
     ///
     /// # Errors
     /// [`Rejection::EmptyStratum`] where the points go on beyond any such curve, [`Rejection::NoRealSolution`] where
@@ -40,7 +37,9 @@ impl Rim {
         points: Vec<Vector3<f64>>,
         near: Vector3<f64>,
         way: Vector3<f64>,
+        half: Option<Vector3<f64>>,
         radius: f64,
+        tuning: &RimTuning,
     ) -> Result<Self, Rejection> {
         let normal = patch.height(&near).1.normalize();
         let upright = |out: Vector3<f64>| {
@@ -62,12 +61,14 @@ impl Rim {
             let slope = rim.envelope.slope(rim.envelope.foot([0.0, 0.0]));
             rim = upright((rim.out - rim.along * slope).normalize())?;
         }
-        if rim.envelope.bend().abs() * radius > MOST_BEND {
+        if rim.envelope.bend().abs() * radius > tuning.bend {
             return Err(Rejection::NoRealSolution);
         }
-        let beyond = rim.area_beyond(radius);
-        let inside = (PI * radius * radius - beyond).max(f64::MIN_POSITIVE);
-        if points.len() as f64 * beyond / inside < LEAST_MISSING {
+        let side = half.map(|out| rim.along.dot(&out));
+        let beyond = rim.area_beyond(radius, side);
+        let whole = PI * radius * radius * if half.is_some() { 0.5 } else { 1.0 };
+        let inside = (whole - beyond).max(f64::MIN_POSITIVE);
+        if points.len() as f64 * beyond / inside < tuning.missing {
             return Err(Rejection::EmptyStratum {
                 stratum: 0,
                 found: 0,
@@ -76,15 +77,18 @@ impl Rim {
         Ok(rim)
     }
 
-    /// Area of the disc of `radius` about the place on the curve beyond the parabola.
-    fn area_beyond(&self, radius: f64) -> f64 {
+    /// Area of the disc of `radius` about the place on the curve beyond the parabola, or of its half on the side of the
+    /// given sign.
+    fn area_beyond(&self, radius: f64, side: Option<f64>) -> f64 {
         let width = 2.0 * radius / STRIPS as f64;
         let strip = |k: usize| {
             let t = -radius + (k as f64 + 0.5) * width;
             let half = (radius * radius - t * t).max(0.0).sqrt();
             (half - self.envelope.at(t).clamp(-half, half)) * width
         };
-        (0..STRIPS).map(strip).sum()
+        let counts =
+            |k: &usize| side.is_none_or(|s| s * (*k as f64 + 0.5 - STRIPS as f64 / 2.0) > 0.0);
+        (0..STRIPS).filter(counts).map(strip).sum()
     }
 
     fn flat(&self, x: &Vector3<f64>) -> [f64; 2] {

@@ -6,8 +6,6 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Rounds of fitting patches and assigning points anew.
 const ROUNDS: usize = 3;
-/// Patches that meet at a smaller angle (sine) do not locate a curve.
-const LEAST_SINE: f64 = 0.15;
 
 /// The plane itself as a patch.
 pub(super) fn patch_over(plane: &Flat<3>) -> QuadraticPatch {
@@ -69,21 +67,17 @@ impl Sheets {
         }
     }
 
-    /// Sine of the angle of the first two patches at a place.
-    pub(super) fn sine(&self, place: &Vector3<f64>) -> f64 {
-        let [a, b] = [0, 1].map(|k| self.patches[k].height(place).1.normalize());
-        a.cross(&b).norm()
-    }
-
     /// The point nearest to `start`, to first order, in which all the patches named meet, normals
     /// spanning `rank` directions: 2 for a curve, 3 for a point. Newton with steps of least norm;
-    /// `None` when it wanders farther than `reach`, or when the normals span another number of directions.
+    /// `None` when it wanders farther than `reach`, or when the normals span another number of directions: those at a
+    /// smaller sine than `least_sine` are one.
     pub(super) fn meet(
         &self,
         which: &[usize],
         rank: usize,
         start: Vector3<f64>,
         reach: f64,
+        least_sine: f64,
     ) -> Option<Vector3<f64>> {
         let mut x = start;
         let mut last = f64::INFINITY;
@@ -102,7 +96,7 @@ impl Sheets {
             let mut used = 0;
             for k in 0..3 {
                 let value = eigen.eigenvalues[k];
-                if value > LEAST_SINE * LEAST_SINE {
+                if value > least_sine * least_sine {
                     let axis = eigen.eigenvectors.column(k);
                     step += axis * (axis.dot(&right) / value);
                     used += 1;

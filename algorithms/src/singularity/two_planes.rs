@@ -1,254 +1,13 @@
-//! Two sheets that cross in a curve: the quadric that factors into two planes.
+//! Two sheets that cross in a curve.
 
 use super::patch::{PATCH_POINTS, QuadraticPatch};
+use super::plane_pair::PlanePair;
 use super::tolerance::{Tolerance, at_least, vectors};
 use crate::tuning::TwoPlanesTuning;
 use crosscap_core::{
-    Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
+    Decomposition, Error, Label, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
-use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, Vector4};
-
-/// Two planes `n_k . x + c_k = 0` of space with unit normals.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanePair {
-    /// Unit normals.
-    pub normals: [Vector3<f64>; 2],
-    /// Offsets.
-    pub offsets: [f64; 2],
-}
-
-impl PlanePair {
-    /// Direct estimate (Martin & Watson 2011, section 2.2): the quadric of least algebraic
-    /// residual, brought to rank 2, factored. `scale` is a length typical of the points
-    /// (conditioning only).
-    ///
-    /// # Errors
-    /// [`Rejection::NoRealSolution`] when the two leading eigenvalues of its quadratic part have
-    /// the same sign: two complex planes.
-    pub fn direct(
-        points: impl Iterator<Item = Vector3<f64>>,
-        scale: f64,
-    ) -> Result<Self, Rejection> {
-        // Sums of x^i y^j z^k up to degree 4, from which the normal matrix is read.
-        let mut sums = [0.0; POWERS];
-        let inverse = 1.0 / scale;
-        for x in points {
-            let [x, y, z] = [x.x * inverse, x.y * inverse, x.z * inverse];
-            let second = [x * x, x * y, x * z, y * y, y * z, z * z];
-            let [xx, xy, xz, yy, yz, zz] = second;
-            let powers = [
-                1.0,
-                x,
-                y,
-                z,
-                xx,
-                xy,
-                xz,
-                yy,
-                yz,
-                zz,
-                xx * x,
-                xx * y,
-                xx * z,
-                xy * y,
-                xy * z,
-                xz * z,
-                yy * y,
-                yy * z,
-                yz * z,
-                zz * z,
-                xx * xx,
-                xx * xy,
-                xx * xz,
-                xx * yy,
-                xx * yz,
-                xx * zz,
-                xy * yy,
-                xy * yz,
-                xy * zz,
-                xz * zz,
-                yy * yy,
-                yy * yz,
-                yy * zz,
-                yz * zz,
-                zz * zz,
-            ];
-            for (s, p) in sums.iter_mut().zip(&powers) {
-                *s += p;
-            }
-        }
-        let normal = SMatrix::<f64, 10, 10>::from_fn(|p, q| {
-            let ((u, e), (v, f)) = (ENTRIES[p], ENTRIES[q]);
-            let exponents = [e[0] + f[0], e[1] + f[1], e[2] + f[2]];
-            u * v * sums[position(exponents)]
-        });
-        let eigen = normal.symmetric_eigen();
-        let least = eigen.eigenvalues.imin();
-        let a = eigen.eigenvectors.column(least);
-        let quadratic = Matrix3::new(a[0], a[1], a[2], a[1], a[4], a[5], a[2], a[5], a[7]);
-        let size = quadratic.norm();
-        if size < 1e-12 {
-            return Err(Rejection::NoRealSolution);
-        }
-        let quadratic = quadratic / size;
-        let linear = Vector3::new(a[3], a[6], a[8]) / size;
-        let parts = quadratic.symmetric_eigen();
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| {
-            parts.eigenvalues[j]
-                .abs()
-                .total_cmp(&parts.eigenvalues[i].abs())
-        });
-        let (mut l1, mut l2) = (parts.eigenvalues[order[0]], parts.eigenvalues[order[1]]);
-        let mut p1: Vector3<f64> = parts.eigenvectors.column(order[0]).into();
-        let mut p2: Vector3<f64> = parts.eigenvectors.column(order[1]).into();
-        if l1 * l2 >= 0.0 {
-            return Err(Rejection::NoRealSolution);
-        }
-        if l1 < 0.0 {
-            std::mem::swap(&mut l1, &mut l2);
-            std::mem::swap(&mut p1, &mut p2);
-        }
-        // Least squares of [l1 p1, l2 p2](r, s) = linear; p1, p2 are orthonormal.
-        let (r, s) = (p1.dot(&linear) / l1, p2.dot(&linear) / l2);
-        let (u, v) = (l1.sqrt(), (-l2).sqrt());
-        let plane = |sign: f64| {
-            let normal = p1 * u + p2 * (sign * v);
-            let length = normal.norm();
-            (normal / length, (r * u + sign * s * v) / length * scale)
-        };
-        let ((n1, c1), (n2, c2)) = (plane(1.0), plane(-1.0));
-        Ok(Self {
-            normals: [n1, n2],
-            offsets: [c1, c2],
-        })
-    }
-
-    /// Refinement by the paper's equation (5): minimizes the sum of squares of the product of the two
-    /// plane functions over pairs of planes (unit normals, real by construction), by
-    /// Gauss-Newton with damping from this pair on. Returns the pair reached and its sum of squares.
-    pub fn refined(
-        self,
-        points: impl Iterator<Item = Vector3<f64>> + Clone,
-        rounds: usize,
-    ) -> (Self, f64) {
-        let cost = |pair: &Self| -> f64 {
-            points
-                .clone()
-                .map(|x| (pair.distance(0, &x) * pair.distance(1, &x)).powi(2))
-                .sum()
-        };
-        let mut best = self;
-        let mut value = cost(&best);
-        let mut damping = 1e-3;
-        for _ in 0..rounds {
-            let mut normal = SMatrix::<f64, 8, 8>::zeros();
-            let mut right = SVector::<f64, 8>::zeros();
-            for x in points.clone() {
-                let (f, g) = (best.distance(0, &x), best.distance(1, &x));
-                let row = SVector::<f64, 8>::from([
-                    g * x.x,
-                    g * x.y,
-                    g * x.z,
-                    g,
-                    f * x.x,
-                    f * x.y,
-                    f * x.z,
-                    f,
-                ]);
-                normal.ger(1.0, &row, &row, 1.0);
-                right.axpy(-f * g, &row, 1.0);
-            }
-            let lift = damping * normal.trace() / 8.0 + f64::MIN_POSITIVE;
-            for k in 0..8 {
-                normal[(k, k)] += lift;
-            }
-            let Some(step) = normal.cholesky().map(|c| c.solve(&right)) else {
-                break;
-            };
-            let moved = |k: usize| {
-                let q = Vector4::new(
-                    best.normals[k].x,
-                    best.normals[k].y,
-                    best.normals[k].z,
-                    best.offsets[k],
-                ) + step.fixed_rows::<4>(4 * k);
-                let length = q.xyz().norm();
-                (q.xyz() / length, q.w / length)
-            };
-            let ((n1, c1), (n2, c2)) = (moved(0), moved(1));
-            let next = Self {
-                normals: [n1, n2],
-                offsets: [c1, c2],
-            };
-            let reached = cost(&next);
-            if reached < value {
-                let done = reached > value * (1.0 - 1e-10);
-                (best, value) = (next, reached);
-                damping = (damping * 0.2).max(1e-12);
-                if done {
-                    break;
-                }
-            } else {
-                damping *= 8.0;
-                if damping > 1e6 {
-                    break;
-                }
-            }
-        }
-        (best, value)
-    }
-
-    /// Signed distance of `x` from plane `k`.
-    pub fn distance(&self, k: usize, x: &Vector3<f64>) -> f64 {
-        self.normals[k].dot(x) + self.offsets[k]
-    }
-
-    /// Sine of the angle between the planes.
-    pub fn sine(&self) -> f64 {
-        self.normals[0].cross(&self.normals[1]).norm()
-    }
-
-    /// Unit direction of the line in which the planes meet and the point of it nearest to `x`;
-    /// `None` for planes closer to parallel than about half a degree.
-    pub fn line(&self, x: &Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
-        let [n1, n2] = self.normals;
-        let cosine = n1.dot(&n2);
-        let square = 1.0 - cosine * cosine;
-        if square < 1e-4 {
-            return None;
-        }
-        let (f, g) = (self.distance(0, x), self.distance(1, x));
-        let alpha = (f - cosine * g) / square;
-        let beta = (g - cosine * f) / square;
-        Some((n1.cross(&n2).normalize(), x - n1 * alpha - n2 * beta))
-    }
-}
-
-/// Number of powers x^i y^j z^k up to degree 4.
-const POWERS: usize = 35;
-
-/// The entries of the paper's row of M: factor and exponents.
-const ENTRIES: [(f64, [usize; 3]); 10] = [
-    (1.0, [2, 0, 0]),
-    (2.0, [1, 1, 0]),
-    (2.0, [1, 0, 1]),
-    (2.0, [1, 0, 0]),
-    (1.0, [0, 2, 0]),
-    (2.0, [0, 1, 1]),
-    (2.0, [0, 1, 0]),
-    (1.0, [0, 0, 2]),
-    (2.0, [0, 0, 1]),
-    (1.0, [0, 0, 0]),
-];
-
-/// Where x^i y^j z^k is among the powers: by degree, then by falling i, then by falling j.
-const fn position([i, j, k]: [usize; 3]) -> usize {
-    let degree = i + j + k;
-    let before = degree * (degree + 1) * (degree + 2) / 6;
-    let rest = j + k;
-    before + rest * (rest + 1) / 2 + k
-}
+use nalgebra::{Matrix2, Vector2, Vector3};
 
 /// Two sheets that cross along a double curve.
 ///
@@ -291,75 +50,51 @@ impl TwoPlanes {
     fn fit(&self, local: &LocalPoints<'_>) -> Result<Sheets, Rejection> {
         let count = local.fitted;
         at_least(2 * PATCH_POINTS, local)?;
-        let Tolerance { ep, .. } = self.tolerance;
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
         let mut planes = PlanePair::direct(points.iter().copied(), local.radius)?;
         if self.refinement_rounds > 0 {
-            planes = planes
-                .refined(points.iter().copied(), self.refinement_rounds)
-                .0;
+            let refined = planes.refined(points.iter().copied(), self.refinement_rounds);
+            planes = refined.0;
         }
-        let center = all[local.center];
-        let (tangent, origin) = planes.line(&center).ok_or(Rejection::NoRealSolution)?;
+        let line = planes.line(&all[local.center]);
+        let (tangent, origin) = line.ok_or(Rejection::NoRealSolution)?;
         // The plane itself, through the line.
-        let mut sheets = planes
+        let sheets = planes
             .normals
             .map(|normal| QuadraticPatch::plane(origin, [tangent, normal.cross(&tangent), normal]));
-        let columns = [0, 1, 2].map(|axis| all.iter().map(|x| x[axis]).collect::<Vec<f64>>());
-        let columns = columns.each_ref().map(Vec::as_slice);
-        let mut distances = [vec![0.0; all.len()], vec![0.0; all.len()]];
-        let nearer = |d: &[Vec<f64>; 2], k: usize| usize::from(d[1][k].abs() < d[0][k].abs());
-        // Only the fitted rows matter until the patches are final.
-        let first = columns.map(|c| &c[..count]);
-        if self.curved {
-            for _ in 0..3 {
-                for (patch, out) in sheets.iter().zip(&mut distances) {
-                    patch.signed_distances(first, &mut out[..count]);
-                }
-                for (own, patch) in sheets.iter_mut().enumerate() {
-                    let points = points
-                        .iter()
-                        .enumerate()
-                        .filter(|&(k, _)| nearer(&distances, k) == own)
-                        .map(|(_, x)| *x);
-                    patch.fit(points, local.radius);
-                }
+        let patches = Patches::fit(sheets, &all, count, self.curved.then_some(local.radius));
+        let cells = patches.cells(count, self.tolerance.ep);
+        let residual = self.tolerance.residual(cells.sum, count)?;
+        self.holds(&cells, count, residual)?;
+        for (own, normal) in planes.normals.iter().enumerate() {
+            let across = normal.cross(&tangent);
+            let own = (0..count)
+                .filter(|&k| cells.labels[k] != 0 && patches.nearer(k) == own)
+                .map(|k| points[k]);
+            if narrowness(own, &tangent, &across) < self.tuning.narrowness {
+                return Err(Rejection::NoRealSolution);
             }
         }
-        for (patch, out) in sheets.iter().zip(&mut distances) {
-            patch.signed_distances(columns, out);
-        }
-        let mut labels = vec![0u8; all.len()];
-        let mut sum = 0.0;
-        let mut astray = 0usize;
-        let mut held = [0usize; 5];
-        for (k, label) in labels.iter_mut().enumerate() {
-            let sheet = nearer(&distances, k);
-            let (own, other) = (distances[sheet][k], distances[1 - sheet][k]);
-            // Cells in cyclic order around the curve: 1, 2, 3, 4.
-            let cell = match (sheet, other >= 0.0) {
-                (0, true) => 1,
-                (1, true) => 2,
-                (0, false) => 3,
-                _ => 4,
-            };
-            *label = if own.abs() < ep && other.abs() < ep {
-                0
-            } else {
-                cell
-            };
-            if k < count {
-                sum += own * own;
-                astray += usize::from(own.abs() > ep);
-                held[*label as usize] += 1;
-            }
-        }
-        let residual = self.tolerance.residual(sum, count)?;
-        if self.curved && astray as f64 > self.tuning.astray * count as f64 {
+        Ok(Sheets {
+            tuning: self.tuning,
+            ep: self.tolerance.ep,
+            radius: local.radius,
+            fitted: count,
+            sheets: patches.sheets,
+            labels: cells.labels,
+            all,
+            residual,
+        })
+    }
+
+    /// Whether few points are astray, and the cells hold enough.
+    fn holds(&self, cells: &CellsHeld, count: usize, residual: f64) -> Result<(), Rejection> {
+        let CellsHeld { astray, held, .. } = cells;
+        if self.curved && *astray as f64 > self.tuning.astray * count as f64 {
             return Err(Rejection::PoorFit {
                 residual,
-                limit: ep,
+                limit: self.tolerance.ep,
             });
         }
         let least = (self.tuning.cell_share * (count - held[0]) as f64).max(3.0);
@@ -372,32 +107,106 @@ impl TwoPlanes {
         } else {
             thin(cells[1], least).then_some(cells[1])
         };
-        if let Some(stratum) = short {
-            return Err(Rejection::EmptyStratum {
+        match short {
+            Some(stratum) => Err(Rejection::EmptyStratum {
                 stratum,
                 found: held[stratum],
-            });
+            }),
+            None => Ok(()),
         }
-        for (own, normal) in planes.normals.iter().enumerate() {
-            let across = normal.cross(&tangent);
-            let own = (0..count)
-                .filter(|&k| labels[k] != 0 && nearer(&distances, k) == own)
-                .map(|k| points[k]);
-            if narrowness(own, &tangent, &across) < self.tuning.narrowness {
-                return Err(Rejection::NoRealSolution);
+    }
+}
+
+/// A patch a sheet, with the signed distances of all points from both.
+struct Patches {
+    sheets: [QuadraticPatch; 2],
+    distances: [Vec<f64>; 2],
+}
+
+/// The points by cell.
+struct CellsHeld {
+    labels: Vec<u8>,
+    /// Fitted points of every label.
+    held: [usize; 5],
+    /// Fitted points farther than ep from both sheets.
+    astray: usize,
+    /// Squared distances of the fitted points from the nearer sheet.
+    sum: f64,
+}
+
+impl Patches {
+    /// The sheets, bent to the first `count` points where a radius is given: three rounds of hard reassignment.
+    fn fit(
+        sheets: [QuadraticPatch; 2],
+        all: &[Vector3<f64>],
+        count: usize,
+        bent: Option<f64>,
+    ) -> Self {
+        let columns = [0, 1, 2].map(|axis| all.iter().map(|x| x[axis]).collect::<Vec<f64>>());
+        let columns = columns.each_ref().map(Vec::as_slice);
+        let mut out = Self {
+            sheets,
+            distances: [vec![0.0; all.len()], vec![0.0; all.len()]],
+        };
+        // Only the fitted rows matter until the patches are final.
+        let first = columns.map(|c| &c[..count]);
+        if let Some(radius) = bent {
+            for _ in 0..3 {
+                for (patch, out) in out.sheets.iter().zip(&mut out.distances) {
+                    patch.signed_distances(first, &mut out[..count]);
+                }
+                for own in 0..2 {
+                    let points = (all[..count].iter().enumerate())
+                        .filter(|&(k, _)| nearer(&out.distances, k) == own)
+                        .map(|(_, x)| *x);
+                    out.sheets[own].fit(points, radius);
+                }
             }
         }
-        Ok(Sheets {
-            tuning: self.tuning,
-            ep,
-            radius: local.radius,
-            all,
-            fitted: count,
-            sheets,
-            labels,
-            residual,
-        })
+        for (patch, out) in out.sheets.iter().zip(&mut out.distances) {
+            patch.signed_distances(columns, out);
+        }
+        out
     }
+
+    /// The sheet that a point is nearer to.
+    fn nearer(&self, k: usize) -> usize {
+        nearer(&self.distances, k)
+    }
+
+    /// Labels all points, and counts the first `count` of them.
+    fn cells(&self, count: usize, ep: f64) -> CellsHeld {
+        let mut cells = CellsHeld {
+            labels: vec![0; self.distances[0].len()],
+            held: [0; 5],
+            astray: 0,
+            sum: 0.0,
+        };
+        for (k, label) in cells.labels.iter_mut().enumerate() {
+            let sheet = self.nearer(k);
+            let (own, other) = (self.distances[sheet][k], self.distances[1 - sheet][k]);
+            // Cells in cyclic order around the curve: 1, 2, 3, 4.
+            let cell = match (sheet, other >= 0.0) {
+                (0, true) => 1,
+                (1, true) => 2,
+                (0, false) => 3,
+                _ => 4,
+            };
+            let on_curve = own.abs() < ep && other.abs() < ep;
+            *label = if on_curve { 0 } else { cell };
+            if k < count {
+                cells.sum += own * own;
+                cells.astray += usize::from(own.abs() > ep);
+                cells.held[*label as usize] += 1;
+            }
+        }
+        cells
+    }
+}
+
+/// The sheet that a point is nearer to, by its distances from both.
+fn nearer(distances: &[Vec<f64>; 2], k: usize) -> usize {
+    usize::from(distances[1][k].abs() < distances[0][k].abs())
 }
 
 /// Two sheets fitted to a neighborhood.
@@ -495,7 +304,7 @@ impl SingularityModel for TwoPlanes {
             points: Vec::new(),
             center: center.place,
             center_offset: center.offset,
-            labels: fit.labels,
+            labels: fit.labels.into_iter().map(Label::from).collect(),
         };
         Ok((decomposition, located))
     }

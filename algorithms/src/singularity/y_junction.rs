@@ -7,7 +7,7 @@ use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crate::tuning::YJunctionTuning;
 use crosscap_core::{
-    Decomposition, Error, LocalPoints, Located, Rejection, SingularityModel, Stratum,
+    Decomposition, Error, Label, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -114,35 +114,36 @@ impl Book {
     }
 }
 
-impl SingularityModel for YJunction {
-    fn local_dimension(&self) -> usize {
-        3
-    }
+/// Three half sheets fitted to a neighborhood.
+struct Fit {
+    all: Vec<Vector3<f64>>,
+    fitted: usize,
+    sheets: Sheets,
+    labels: Vec<u8>,
+    residual: f64,
+    /// How far a center is moved, how far from the junction the cells must have points, and from where on a point
+    /// tells where the junction is.
+    reach: [f64; 3],
+    /// Least sine at which sheets meet.
+    sine: f64,
+}
 
-    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
-        Ok(self.decompose_about(local, &[])?.0)
-    }
-
-    fn decompose_about(
-        &self,
-        local: &LocalPoints<'_>,
-        rows: &[usize],
-    ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
+impl YJunction {
+    /// Fits three half sheets, and labels all points.
+    fn fit(&self, local: &LocalPoints<'_>) -> Result<Fit, Rejection> {
         at_least(3 * PATCH_POINTS, local)?;
         let count = local.fitted;
-        let ep = self.tolerance.ep;
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
         let cubic = Vanishing::fit(points, 3, 1, local.radius).ok_or(Rejection::NoRealSolution)?;
         let found = candidates(points, |x, out| cubic.gradients(x, out));
-        let tuning = &self.tuning;
+        let (tuning, ep) = (&self.tuning, self.tolerance.ep);
         let tolerance = tuning.plane * local.radius;
         let planes = greedy(points, &found, 3, tolerance).ok_or(Rejection::NoRealSolution)?;
         let book = Book::of(&planes, points, tolerance, tuning).ok_or(Rejection::NoRealSolution)?;
         let sheets = Sheets::new(&planes, &all, count, local.radius, |k, d, x| {
             book.distance(k, d, x)
         });
-
         let mut labels = vec![0u8; all.len()];
         let mut held = [0usize; 4];
         let mut sum = 0.0;
@@ -164,44 +165,81 @@ impl SingularityModel for YJunction {
                 found: held[stratum],
             });
         }
-        let supported = |place: &Vector3<f64>| {
-            let mut nearest = [f64::INFINITY; 4];
-            for (x, &label) in points.iter().zip(&labels) {
-                let n = &mut nearest[usize::from(label)];
-                *n = n.min((x - place).norm());
-            }
-            nearest[1..]
-                .iter()
-                .all(|&d| d < tuning.support * local.radius)
-        };
-        let locate = |k: usize| -> Option<Located> {
-            let x = all[k];
-            let on_curve = labels[k] == 0;
-            let place = sheets
-                .meet(&[0, 1, 2], 2, x, tuning.step * local.radius)
-                .filter(|p| on_curve || (p - x).norm() < tuning.witness * ep)
-                .filter(supported);
-            if on_curve && place.is_none() {
-                return None;
-            }
-            Some(Located {
-                dimension: if on_curve { 1 } else { 2 },
-                cells: 3,
-                place: place.unwrap_or(x).iter().copied().collect(),
-                offset: place.map_or(f64::INFINITY, |p| (p - x).norm()),
-            })
-        };
-        let center = locate(local.center).ok_or(Rejection::NoRealSolution)?;
-        let located = rows.iter().map(|&row| locate(row)).collect();
+        let radius = local.radius;
+        Ok(Fit {
+            all,
+            fitted: count,
+            sheets,
+            labels,
+            residual,
+            sine: tuning.meet,
+            reach: [
+                tuning.step * radius,
+                tuning.support * radius,
+                tuning.witness * ep,
+            ],
+        })
+    }
+}
+
+impl Fit {
+    /// Where a row is, `None` where it is in the band of the junction and no junction can be found.
+    fn locate(&self, row: usize) -> Option<Located> {
+        let [step, _, witness] = self.reach;
+        let x = self.all[row];
+        let on_curve = self.labels[row] == 0;
+        let place = (self.sheets)
+            .meet(&[0, 1, 2], 2, x, step, self.sine)
+            .filter(|p| on_curve || (p - x).norm() < witness)
+            .filter(|p| self.supports(p));
+        if on_curve && place.is_none() {
+            return None;
+        }
+        Some(Located {
+            dimension: if on_curve { 1 } else { 2 },
+            cells: 3,
+            place: place.unwrap_or(x).iter().copied().collect(),
+            offset: place.map_or(f64::INFINITY, |p| (p - x).norm()),
+        })
+    }
+
+    /// Whether all cells have a fitted point close to a place.
+    fn supports(&self, place: &Vector3<f64>) -> bool {
+        let mut nearest = [f64::INFINITY; 4];
+        for (x, &label) in self.all[..self.fitted].iter().zip(&self.labels) {
+            let n = &mut nearest[usize::from(label)];
+            *n = n.min((x - place).norm());
+        }
+        nearest[1..].iter().all(|&d| d < self.reach[1])
+    }
+}
+
+impl SingularityModel for YJunction {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        Ok(self.decompose_about(local, &[])?.0)
+    }
+
+    fn decompose_about(
+        &self,
+        local: &LocalPoints<'_>,
+        rows: &[usize],
+    ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
+        let fit = self.fit(local)?;
+        let center = fit.locate(local.center).ok_or(Rejection::NoRealSolution)?;
+        let located = rows.iter().map(|&row| fit.locate(row)).collect();
         let decomposition = Decomposition {
             strata: [1, 2, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
             cells_at_curve: vec![3],
-            residual,
+            residual: fit.residual,
             parameters: 22,
             points: Vec::new(),
             center: center.place,
             center_offset: center.offset,
-            labels,
+            labels: fit.labels.into_iter().map(Label::from).collect(),
         };
         Ok((decomposition, located))
     }

@@ -183,11 +183,12 @@ mod tests {
     use super::*;
     use crate::execute::Serial;
     use crate::metric::{BruteForceOracle, Euclidean, GivenDistances};
+    use crosscap_core::Row;
     use proptest::prelude::*;
 
     /// The nearest others of every point, by a space.
-    fn nearest(space: &Space<'_, f64>, margin: f64) -> Vec<Vec<u32>> {
-        let rows: Vec<u32> = (0..space.len() as u32).collect();
+    fn nearest(space: &Space<'_, f64>, margin: f64) -> Vec<Vec<Row>> {
+        let rows: Vec<Row> = (0..space.len()).map(Row::new).collect();
         let search = NearestOfEach::new(space, &rows, margin);
         let found = search.each(&|_| true, &Serial, |row, near| {
             let mut near = near.to_vec();
@@ -243,7 +244,7 @@ mod tests {
         assert!(law(space.audit(2.0).unwrap_err()));
         assert!(law(space.distance(0, 39).unwrap_err()));
         // The ends of the line have fewer than twelve others at a distance that is a number.
-        let rows: Vec<u32> = (0..40).collect();
+        let rows: Vec<Row> = (0..40).map(Row::new).collect();
         let found = NearestOfEach::new(&space, &rows, 1.0).each(&|_| true, &Serial, |_, _| ());
         assert!(law(found.unwrap_err()));
         assert_eq!(space.distance(3, 5), Ok(2.0));

@@ -3,16 +3,16 @@
 use super::analysis::{Fitter, Scratch};
 use super::strata::Strata;
 use crate::execute;
-use crosscap_core::{Decomposition, Scalar};
+use crosscap_core::{Decomposition, Label, Row, Scalar};
 use std::collections::BTreeMap;
 
 /// A fit about a point on a curve or point, with the labels of the rows around it.
 #[derive(Debug)]
 pub(super) struct Reference {
     /// Its row.
-    pub(super) row: usize,
+    pub(super) row: Row,
     /// Rows in its ball with their labels, by row.
-    labels: Vec<(u32, u8)>,
+    labels: Vec<(Row, Label)>,
     /// Radius of the fit.
     pub(super) radius: f64,
     /// The strata, without the labels.
@@ -21,27 +21,24 @@ pub(super) struct Reference {
 
 impl Reference {
     /// The label of a row.
-    pub(super) fn label(&self, row: usize) -> Option<u8> {
-        let at = self
-            .labels
-            .binary_search_by_key(&(row as u32), |&(r, _)| r)
-            .ok()?;
+    pub(super) fn label(&self, row: Row) -> Option<Label> {
+        let at = self.labels.binary_search_by_key(&row, |x| x.0).ok()?;
         Some(self.labels[at].1)
     }
 
     /// The rows that are labelled, with their labels.
-    pub(super) fn labels(&self) -> &[(u32, u8)] {
+    pub(super) fn labels(&self) -> &[(Row, Label)] {
         &self.labels
     }
 
     /// Whether `label` names a 0-stratum.
-    pub(super) fn is_point(&self, label: u8) -> bool {
-        self.fit.strata[label as usize].dimension == 0
+    pub(super) fn is_point(&self, label: Label) -> bool {
+        self.fit.is_of(label, 0)
     }
 
     /// Whether `label` names a curve.
-    pub(super) fn is_curve(&self, label: u8) -> bool {
-        self.fit.strata[label as usize].dimension == 1
+    pub(super) fn is_curve(&self, label: Label) -> bool {
+        self.fit.is_of(label, 1)
     }
 
     /// Whether the model knows of 0-strata.
@@ -50,8 +47,8 @@ impl Reference {
     }
 
     /// Whether `label` names a cell.
-    pub(super) fn is_cell(&self, label: u8) -> bool {
-        self.fit.strata[label as usize].dimension == 2
+    pub(super) fn is_cell(&self, label: Label) -> bool {
+        self.fit.is_of(label, 2)
     }
 }
 
@@ -64,7 +61,7 @@ pub(super) struct FitId(u32);
 pub(super) struct Atlas {
     fits: Vec<Reference>,
     /// The fit of every row that was asked about; `None` where there is none.
-    of_row: BTreeMap<usize, Option<FitId>>,
+    of_row: BTreeMap<Row, Option<FitId>>,
 }
 
 /// Fits that a job takes at a time.
@@ -72,13 +69,8 @@ const FITS_AT_ONCE: usize = 8;
 
 impl Atlas {
     /// Fits the balls of rows on curves and points, those that were fitted before left out.
-    pub(super) fn fit<S: Scalar>(
-        &mut self,
-        fitter: &Fitter<'_, S>,
-        strata: &Strata,
-        rows: &[usize],
-    ) {
-        let new: Vec<usize> = (rows.iter().copied())
+    pub(super) fn fit<S: Scalar>(&mut self, fitter: &Fitter<'_, S>, strata: &Strata, rows: &[Row]) {
+        let new: Vec<Row> = (rows.iter().copied())
             .filter(|row| !self.of_row.contains_key(row))
             .collect();
         let found = execute::map_blocks(
@@ -91,18 +83,15 @@ impl Atlas {
                 if let Some(region) = regions.find(|r| r.label(new[k]).is_some()) {
                     return Some(Reference {
                         row: new[k],
-                        labels: region.labels.clone(),
+                        labels: region.known(),
                         // All of the region, from whichever of its points.
                         radius: 2.0 * region.reach,
                         fit: region.fit.clone(),
                     });
                 }
                 let (mut fit, near, radius) = fitter.decomposition(strata, new[k], scratch)?;
-                let mut labels: Vec<(u32, u8)> = near
-                    .iter()
-                    .map(|&r| r as u32)
-                    .zip(std::mem::take(&mut fit.labels))
-                    .collect();
+                let mut labels: Vec<(Row, Label)> =
+                    (near.into_iter().zip(std::mem::take(&mut fit.labels))).collect();
                 labels.sort_unstable();
                 Some(Reference {
                     row: new[k],
@@ -127,12 +116,12 @@ impl Atlas {
     }
 
     /// The fit about a row, if it was made.
-    pub(super) fn about(&self, row: usize) -> Option<FitId> {
+    pub(super) fn about(&self, row: Row) -> Option<FitId> {
         self.of_row.get(&row).copied().flatten()
     }
 
     /// The fits about the rows for which there is one, in the order of the rows.
-    pub(super) fn about_all(&self, rows: &[usize]) -> Vec<FitId> {
+    pub(super) fn about_all(&self, rows: &[Row]) -> Vec<FitId> {
         rows.iter().filter_map(|&row| self.about(row)).collect()
     }
 }

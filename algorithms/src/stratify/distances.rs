@@ -5,14 +5,16 @@ use super::charts::ChartSpace;
 use super::strata::Strata;
 use crate::audit;
 use crate::execute::{self, Execute};
-use crosscap_core::{CellNeighborhood, Error, MetricSpace, Scalar, SparseDistances};
+use crosscap_core::{
+    CellNeighborhood, Error, Landmark, MetricSpace, Row, Scalar, SparseDistances, Table,
+};
 
 /// The distances of all members of each neighborhood, of landmarks that stand for `rows`.
 pub(super) fn within_charts<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
     strata: &Strata,
     charts: &ChartSpace<'_, S>,
-    rows: &[usize],
+    rows: &Table<Landmark, Row>,
     neighborhoods: &[CellNeighborhood],
 ) -> Result<SparseDistances<S>, Error> {
     match charts {
@@ -22,7 +24,7 @@ pub(super) fn within_charts<S: Scalar>(
                 expected: "coordinates, or a metric for the charts".into(),
             })?;
             SparseDistances::within(rows.len(), neighborhoods, |a, b| {
-                let (p, q) = (rows[a as usize], rows[b as usize]);
+                let [p, q] = [a, b].map(|k| rows[k].index());
                 S::of(places.squared_distance(p, q).sqrt())
             })
         }
@@ -37,8 +39,10 @@ pub(super) fn within_charts<S: Scalar>(
 }
 
 /// All pairs of members of the same neighborhood, sorted.
-pub(super) fn pairs<'m>(neighborhoods: impl Iterator<Item = &'m [u32]>) -> Vec<(u32, u32)> {
-    let mut pairs: Vec<(u32, u32)> = Vec::new();
+pub(super) fn pairs<'m>(
+    neighborhoods: impl Iterator<Item = &'m [Landmark]>,
+) -> Vec<(Landmark, Landmark)> {
+    let mut pairs: Vec<(Landmark, Landmark)> = Vec::new();
     for members in neighborhoods {
         for (i, &a) in members.iter().enumerate() {
             pairs.extend(members[..i].iter().map(|&b| (a.min(b), a.max(b))));
@@ -56,21 +60,21 @@ pub(super) fn pairs<'m>(neighborhoods: impl Iterator<Item = &'m [u32]>) -> Vec<(
 pub(super) fn lengths<S: Scalar>(
     execute: &dyn Execute,
     metric: &dyn MetricSpace<Scalar = S>,
-    rows: &[usize],
-    pairs: &[(u32, u32)],
+    rows: &Table<Landmark, Row>,
+    pairs: &[(Landmark, Landmark)],
 ) -> Result<Vec<S>, Error> {
-    let runs: Vec<&[(u32, u32)]> = pairs.chunk_by(|x, y| x.0 == y.0).collect();
+    let runs: Vec<&[(Landmark, Landmark)]> = pairs.chunk_by(|x, y| x.0 == y.0).collect();
     let lengths = execute::map(execute, runs.len(), Vec::new, |targets, k| {
         targets.clear();
-        targets.extend(runs[k].iter().map(|&(_, b)| rows[b as usize]));
+        targets.extend(runs[k].iter().map(|&(_, b)| rows[b].index()));
         let mut lengths = Vec::with_capacity(targets.len());
-        metric.distances_to(rows[runs[k][0].0 as usize], targets, &mut lengths);
+        metric.distances_to(rows[runs[k][0].0].index(), targets, &mut lengths);
         lengths
     });
     let lengths: Vec<S> = lengths.into_iter().flatten().collect();
     let wrong = |d: &S| !(d.is_finite() && *d >= S::zero());
     if let Some(at) = lengths.iter().position(wrong) {
-        let [p, q] = [pairs[at].0, pairs[at].1].map(|k| rows[k as usize]);
+        let [p, q] = [pairs[at].0, pairs[at].1].map(|k| rows[k].index());
         audit::distance(metric, p, q)?;
     }
     Ok(lengths)
@@ -81,16 +85,17 @@ pub(super) fn lengths<S: Scalar>(
 fn add_moves<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
     strata: &Strata,
-    rows: &[usize],
-    pairs: &[(u32, u32)],
+    rows: &Table<Landmark, Row>,
+    pairs: &[(Landmark, Landmark)],
     lengths: &mut [S],
 ) {
     let (Some(cloud), Some(places)) = (analyzer.space.places(), strata.places()) else {
         return;
     };
     for (length, &(a, b)) in lengths.iter_mut().zip(pairs) {
-        let (p, q) = (rows[a as usize], rows[b as usize]);
+        let [p, q] = [a, b].map(|k| rows[k]);
         if strata.moved(p) > 0.0 || strata.moved(q) > 0.0 {
+            let (p, q) = (p.index(), q.index());
             let moved = places.squared_distance(p, q).sqrt();
             let straight = cloud.squared_distance(p, q).sqrt();
             *length = S::of((length.as_f64() + moved - straight).max(0.0));

@@ -5,7 +5,7 @@ use super::curve_ends;
 use super::skeleton::Skeleton;
 use super::strata::Strata;
 use crate::audit;
-use crosscap_core::{Error, LandmarkSelector, Scalar};
+use crosscap_core::{Error, LandmarkSelector, Row, Scalar, Table};
 
 /// Landmarks that a selector chooses among the regular points, the skeleton's being taken.
 ///
@@ -18,10 +18,11 @@ pub(super) fn choose<S: Scalar>(
     selector: &dyn LandmarkSelector<Scalar = S>,
     dl: f64,
     seed: u64,
-) -> Result<Vec<usize>, Error> {
+) -> Result<Vec<Row>, Error> {
     let candidates = free_of_edges(analyzer, strata, skeleton);
     let innermost = curve_ends::innermost(strata, analyzer.tuning.ends.innermost * dl);
-    let taken = &[skeleton.rows(), &innermost].concat();
+    let taken = skeleton.rows().iter().chain(&innermost);
+    let taken: &Vec<usize> = &taken.map(|row| row.index()).collect();
     let oracle = analyzer.space.oracle();
     let chosen = selector.select(oracle, &candidates, taken, dl, seed)?;
     let question = audit::Question {
@@ -31,7 +32,8 @@ pub(super) fn choose<S: Scalar>(
         separation: dl,
     };
     audit::selection(oracle, analyzer.execute, &question, &chosen)?;
-    Ok([innermost, chosen].concat())
+    let chosen = chosen.into_iter().map(Row::new);
+    Ok(innermost.into_iter().chain(chosen).collect())
 }
 
 /// Regular rows outside the diametral ball of every chain edge: a landmark inside it would
@@ -42,21 +44,25 @@ fn free_of_edges<S: Scalar>(
     strata: &Strata,
     skeleton: &Skeleton,
 ) -> Vec<usize> {
-    let mut barred = vec![false; strata.len()];
+    let mut barred: Table<Row, bool> = Table::filled(strata.len(), false);
     if let Some(places) = strata.places() {
         let mut near = Vec::new();
         for e in skeleton.edges().iter().filter(|e| e.cells > 0) {
-            let [a, b] = e.ends.map(|k| skeleton.rows()[k as usize]);
-            let length = places.squared_distance(a, b);
+            let [a, b] = e.landmarks().map(|k| skeleton.rows()[k]);
+            let length = places.squared_distance(a.index(), b.index());
             let reach = length.sqrt() + strata.moved(a);
-            analyzer.space.oracle().within(a, S::of(reach), &mut near);
+            analyzer
+                .space
+                .oracle()
+                .within(a.index(), S::of(reach), &mut near);
             for x in &near {
-                let [to_a, to_b] = [a, b].map(|end| places.squared_distance(end, x.index));
-                barred[x.index] |= to_a + to_b < length;
+                let [to_a, to_b] = [a, b].map(|end| places.squared_distance(end.index(), x.index));
+                barred[x.row()] |= to_a + to_b < length;
             }
         }
     }
-    (0..strata.len())
+    (strata.rows())
         .filter(|&i| strata.is_regular(i) && !barred[i])
+        .map(Row::index)
         .collect()
 }

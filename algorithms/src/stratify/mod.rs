@@ -37,7 +37,7 @@ pub use analysis::{Analysis, AnalysisOptions, Analyzer, ModelCounts};
 pub use charts::ChartSpace;
 pub use producer::WaistProducer;
 pub use published::{Published, PublishedCut, PublishedMethod};
-pub use refine::Refinement;
+pub use refine::{Refinement, has_company};
 pub use site::{FitUsed, On, Site, StratumKind};
 pub use strata::Strata;
 pub use stratification::{PointStratum, Stratification, StratifyCounts};

@@ -1,7 +1,7 @@
 //! What makes waists of one cloud.
 
 use super::stratification::Stratification;
-use crosscap_core::{Error, PointCloud, Scalar};
+use crosscap_core::{Error, PointCloud, Row, Scalar};
 
 /// Makes waists of one cloud at one resolution: the first, and others with more landmarks.
 ///
@@ -20,11 +20,11 @@ pub trait WaistProducer<S: Scalar> {
     ///
     /// # Errors
     /// Those of the producer.
-    fn waist(&self, extra: &[usize]) -> Result<Stratification<S>, Error>;
+    fn waist(&self, extra: &[Row]) -> Result<Stratification<S>, Error>;
 
     /// Whether a row may be a landmark beside those that were chosen. As it stands none may, and where triangles stray from
     /// the points they stay as they are.
-    fn may_add(&self, _row: usize) -> bool {
+    fn may_add(&self, _row: Row) -> bool {
         false
     }
 

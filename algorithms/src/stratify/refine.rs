@@ -2,7 +2,7 @@
 
 use super::producer::WaistProducer;
 use crate::tuning::RefinementTuning;
-use crosscap_core::{Complex, Neighbor, NeighborhoodOracle, Scalar};
+use crosscap_core::{Complex, Landmark, Neighbor, NeighborhoodOracle, Row, Scalar, Table};
 
 /// A triangulation beside the points that it should follow.
 pub struct Refinement<'r, S: Scalar> {
@@ -11,7 +11,7 @@ pub struct Refinement<'r, S: Scalar> {
     /// Says where every row lies, and which may be landmarks.
     pub producer: &'r dyn WaistProducer<S>,
     /// Rows of the landmarks.
-    pub rows: &'r [usize],
+    pub rows: &'r Table<Landmark, Row>,
     /// Landmark separation dl.
     pub dl: f64,
     /// How many times dl the separation at each point is; once everywhere when left out.
@@ -25,7 +25,7 @@ impl<S: Scalar> Refinement<'_, S> {
     /// every point. None where every point is one already, or the producer names no places.
     ///
     /// O(log n) for each triangle, O(L) for each that strays, with L landmarks.
-    pub fn rows_where_astray(&self, complex: &Complex) -> Vec<usize> {
+    pub fn rows_where_astray(&self, complex: &Complex) -> Vec<Row> {
         let mut added = Vec::new();
         let Some(places) = self.producer.places() else {
             return added;
@@ -33,7 +33,7 @@ impl<S: Scalar> Refinement<'_, S> {
         if self.rows.len() == places.len() {
             return added;
         }
-        let place = |v: u32| places.point(self.rows[v as usize]);
+        let place = |v: u32| places.point(self.rows[Landmark::from(v)].index());
         let mut middle: Vec<S> = Vec::new();
         for t in &complex.triangles {
             let [a, b, c] = *t;
@@ -43,26 +43,25 @@ impl<S: Scalar> Refinement<'_, S> {
                     let sum: f64 = corners.iter().map(|&v| place(v)[k]).sum();
                     S::of(sum / corners.len() as f64)
                 }));
-                added.extend(self.missing(self.rows[a as usize], t.map(place), &middle, &added));
+                added.extend(self.missing(
+                    self.rows[Landmark::from(a)],
+                    t.map(place),
+                    &middle,
+                    &added,
+                ));
             }
         }
         added
     }
 
     /// Landmark separation at a row.
-    fn separation(&self, row: usize) -> f64 {
-        self.dl * self.scale.map_or(1.0, |scale| scale[row])
+    fn separation(&self, row: Row) -> f64 {
+        self.dl * self.scale.map_or(1.0, |scale| scale[row.index()])
     }
 
     /// A row that should be a landmark beside a triangle with the given corners, the first of which stands for `row`,
     /// and a part of which has its middle at `middle`; `added` are landmarks that were added before.
-    fn missing(
-        &self,
-        row: usize,
-        corners: [&[f64]; 3],
-        middle: &[S],
-        added: &[usize],
-    ) -> Option<usize> {
+    fn missing(&self, row: Row, corners: [&[f64]; 3], middle: &[S], added: &[Row]) -> Option<Row> {
         let RefinementTuning {
             stray,
             separation,
@@ -85,16 +84,17 @@ impl<S: Scalar> Refinement<'_, S> {
         if off_plane(corners, middle, places.point(nearest.index)) < stray * dl {
             return None;
         }
-        let free = |row: usize| self.is_free(row, added, separation * dl);
-        near.iter().map(|x| x.index).find(|&r| free(r))
+        let free = |row: Row| self.is_free(row, added, separation * dl);
+        near.iter().map(Neighbor::row).find(|&r| free(r))
     }
 
     /// Rows that should be landmarks as well: points that a mesh leaves behind, at an edge or a tip that its triangles
     /// cut off; the farthest first. `heights` are the distances of all points from the mesh, unit of the data.
     ///
-    /// Points without company are outliers and stay where they are. None where the space has no coordinates.
+    /// Points without company are outliers and stay where they are: a surface that goes out to a point, be it to a tip, has
+    /// points nearer to it than the mesh is. None where the space has no coordinates.
     /// O(n + f (log n + L)) for n points, f of them far from the mesh, and L landmarks.
-    pub fn rows_left_behind(&self, heights: &[f64]) -> Vec<usize> {
+    pub fn rows_left_behind(&self, heights: &[f64]) -> Vec<Row> {
         let mut added = Vec::new();
         if self
             .producer
@@ -103,9 +103,10 @@ impl<S: Scalar> Refinement<'_, S> {
         {
             return added;
         }
-        let far = |row: usize| heights[row] / self.separation(row);
-        let is_far = |&row: &usize| far(row).is_finite() && far(row) > self.tuning.behind;
-        let mut behind: Vec<usize> = (0..heights.len()).filter(is_far).collect();
+        let far = |row: Row| heights[row.index()] / self.separation(row);
+        let is_far = |&row: &Row| far(row).is_finite() && far(row) > self.tuning.behind;
+        let rows = (0..heights.len()).map(Row::new);
+        let mut behind: Vec<Row> = rows.filter(is_far).collect();
         behind.sort_by(|&a, &b| far(b).total_cmp(&far(a)).then(a.cmp(&b)));
         for row in behind {
             if self.is_free(row, &added, self.tuning.separation * self.separation(row))
@@ -117,24 +118,42 @@ impl<S: Scalar> Refinement<'_, S> {
         added
     }
 
-    /// Whether half of the nearest points of a row are at least half as far from the mesh as it is.
-    fn has_company(&self, row: usize, heights: &[f64]) -> bool {
+    /// Whether a row has [company](has_company).
+    fn has_company(&self, row: Row, heights: &[f64]) -> bool {
         let mut near: Vec<Neighbor<S>> = Vec::new();
-        self.near.nearest(row, self.tuning.company + 1, &mut near);
-        let others = near.iter().map(|x| x.index).filter(|&other| other != row);
-        let along = others.filter(|&other| heights[other] >= 0.5 * heights[row]);
-        2 * along.count() >= self.tuning.company
+        self.near
+            .nearest(row.index(), self.tuning.company + 1, &mut near);
+        let others = near.iter().filter(|x| x.index != row.index());
+        let others = others.map(|x| (x.distance.as_f64(), heights[x.index]));
+        has_company(heights[row.index()], others, self.tuning)
     }
 
     /// Whether a row may become a landmark: it lies in a cell, so far from all others and from those `added`.
-    fn is_free(&self, row: usize, added: &[usize], separation: f64) -> bool {
+    fn is_free(&self, row: Row, added: &[Row], separation: f64) -> bool {
         let Some(places) = self.producer.places() else {
             return false;
         };
         let limit = separation.powi(2);
         let mut others = self.rows.iter().chain(added);
-        self.producer.may_add(row) && others.all(|&r| places.squared_distance(r, row) >= limit)
+        self.producer.may_add(row)
+            && others.all(|r| places.squared_distance(r.index(), row.index()) >= limit)
     }
+}
+
+/// Whether a point is one of many, `height` away from a mesh: half of its nearest, each given by its distance from the point
+/// and its own height, are at least half as high, or are clearly nearer to the point than the mesh is. An outlier has no
+/// company: its nearest points are on the mesh. The unit of all lengths is that of the data.
+pub fn has_company(
+    height: f64,
+    nearest: impl Iterator<Item = (f64, f64)>,
+    tuning: &RefinementTuning,
+) -> bool {
+    let (mut along, mut beside) = (0, 0);
+    for (distance, other) in nearest {
+        along += usize::from(other >= 0.5 * height);
+        beside += usize::from(distance < tuning.nearer * height);
+    }
+    2 * along.max(beside) >= tuning.company
 }
 
 /// Distance of `x` from the plane through `middle` that is parallel to a triangle, in R^N.
@@ -163,6 +182,17 @@ fn off_plane<S: Scalar>(corners: [&[f64]; 3], middle: &[S], x: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_outlier_has_no_company_and_points_of_an_edge_or_a_tip_have() {
+        let tuning = RefinementTuning::MEASURED;
+        let has = |near: [(f64, f64); 4]| has_company(1.0, near.into_iter(), &tuning);
+        // Beside a sheet, with one other outlier near it.
+        assert!(!has([(0.4, 0.8), (1.0, 0.0), (1.1, 0.1), (1.2, 0.0)]));
+        // Along an edge that triangles pass below; at a tip, where the mesh is soon reached.
+        assert!(has([(0.5, 0.9), (0.6, 0.9), (0.8, 0.1), (0.9, 0.2)]));
+        assert!(has([(0.4, 0.4), (0.6, 0.3), (0.8, 0.1), (0.9, 0.0)]));
+    }
 
     #[test]
     fn how_far_a_point_is_off_the_plane_of_a_triangle() {

@@ -1,5 +1,7 @@
 //! Where a point of the cloud is: inside a cell, or on a stratum of lower dimension.
 
+use crosscap_core::Row;
+
 /// A kind of stratum of dimension 0 or 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StratumKind {
@@ -77,7 +79,7 @@ impl Site {
 /// A point whose neighborhood shows a stratum close by, and where that is.
 #[derive(Clone, Debug)]
 pub(super) struct Witness {
-    pub(super) row: usize,
+    pub(super) row: Row,
     pub(super) on: On,
 }
 

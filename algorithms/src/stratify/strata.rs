@@ -4,13 +4,13 @@ use super::analysis::Analysis;
 use super::curve_ends::EndRegion;
 use super::site::{On, Site, StratumKind, Witness};
 use crate::balls::BallTree;
-use crosscap_core::{PointCloud, Scalar, squared_distance};
+use crosscap_core::{PointCloud, Row, Scalar, Table, squared_distance};
 
 /// Where every point is, with the places that points on curves are moved to. Made once from an
 /// [`Analysis`] and a resolution; what is at the ends of curves is entered then, and nothing changes after that.
 #[derive(Clone, Debug)]
 pub struct Strata {
-    sites: Vec<Site>,
+    sites: Table<Row, Site>,
     places: Option<PointCloud<f64>>,
     /// Points at which curves end inside a sheet, with what is about them.
     regions: Vec<EndRegion>,
@@ -46,9 +46,9 @@ impl Strata {
     pub(super) fn as_found<S: Scalar>(analysis: &Analysis, cloud: Option<&PointCloud<S>>) -> Self {
         let mut places = cloud.map(PointCloud::cast);
         if let Some(places) = &mut places {
-            for (row, site) in analysis.sites.iter().enumerate() {
+            for (row, site) in analysis.sites.each() {
                 if let Some(place) = site.on().and_then(|on| on.place.as_deref()) {
-                    places.set_point(row, place);
+                    places.set_point(row.index(), place);
                 }
             }
         }
@@ -70,17 +70,22 @@ impl Strata {
     }
 
     /// Where every point is.
-    pub fn sites(&self) -> &[Site] {
+    pub fn sites(&self) -> &Table<Row, Site> {
         &self.sites
     }
 
+    /// All rows.
+    pub fn rows(&self) -> impl Iterator<Item = Row> + use<> {
+        self.sites.ids()
+    }
+
     /// The kind of stratum that a point is on, `None` inside a cell.
-    pub fn kind(&self, row: usize) -> Option<StratumKind> {
+    pub fn kind(&self, row: Row) -> Option<StratumKind> {
         self.sites[row].kind()
     }
 
     /// Whether a point is inside a cell.
-    pub fn is_regular(&self, row: usize) -> bool {
+    pub fn is_regular(&self, row: Row) -> bool {
         self.sites[row].on().is_none()
     }
 
@@ -90,12 +95,12 @@ impl Strata {
     }
 
     /// How far a point was moved; 0 inside a cell.
-    pub fn moved(&self, row: usize) -> f64 {
+    pub fn moved(&self, row: Row) -> f64 {
         self.sites[row].on().map_or(0.0, |on| on.moved)
     }
 
     /// Radius of the fit that put a point on a curve or point, where there is one.
-    pub(super) fn radius(&self, row: usize) -> Option<f64> {
+    pub(super) fn radius(&self, row: Row) -> Option<f64> {
         self.sites[row].on()?.fit.map(|fit| fit.radius)
     }
 
@@ -110,13 +115,17 @@ impl Strata {
     }
 
     /// Puts a row on a stratum, or back inside a cell, to its place in the cloud.
-    pub(super) fn enter<S: Scalar>(&mut self, cloud: &PointCloud<S>, row: usize, on: Option<On>) {
+    pub(super) fn enter<S: Scalar>(&mut self, cloud: &PointCloud<S>, row: Row, on: Option<On>) {
         if let Some(places) = &mut self.places {
             match on.as_ref().and_then(|on| on.place.as_deref()) {
-                Some(place) => places.set_point(row, place),
+                Some(place) => places.set_point(row.index(), place),
                 None => {
-                    let own: Vec<f64> = cloud.point(row).iter().map(|x| x.as_f64()).collect();
-                    places.set_point(row, &own);
+                    let own: Vec<f64> = cloud
+                        .point(row.index())
+                        .iter()
+                        .map(|x| x.as_f64())
+                        .collect();
+                    places.set_point(row.index(), &own);
                 }
             }
         }
@@ -124,34 +133,34 @@ impl Strata {
     }
 
     /// How many cells meet at a point; 0 inside a cell.
-    pub(super) fn cells(&self, row: usize) -> u8 {
+    pub(super) fn cells(&self, row: Row) -> u8 {
         self.sites[row].on().map_or(0, |on| on.cells)
     }
 }
 
 /// Strata while their gaps are filled.
 struct Filling<'a> {
-    sites: &'a mut [Site],
+    sites: &'a mut Table<Row, Site>,
     places: &'a mut PointCloud<f64>,
 }
 
 impl Filling<'_> {
     fn enter(&mut self, witness: &Witness) {
-        self.places.set_point(witness.row, witness.place());
+        self.places.set_point(witness.row.index(), witness.place());
         self.sites[witness.row] = Site::On(Box::new(witness.on.clone()));
     }
 
-    fn distance(&self, row: usize, place: &[f64]) -> f64 {
-        squared_distance(self.places.point(row), place)
+    fn distance(&self, row: Row, place: &[f64]) -> f64 {
+        squared_distance(self.places.point(row.index()), place)
     }
 
     fn points(&mut self, apexes: &[Witness], apart: f64) {
-        let rows = 0..self.sites.len();
-        let mut points: Vec<usize> = rows
+        let rows = self.sites.ids();
+        let mut points: Vec<Row> = rows
             .filter(|&i| self.sites[i].kind() == Some(StratumKind::Point))
             .collect();
         for w in nearest_first(apexes) {
-            let near = |&r: &usize| self.distance(r, w.place()) < apart * apart;
+            let near = |&r: &Row| self.distance(r, w.place()) < apart * apart;
             if !points.iter().any(near) {
                 self.enter(w);
                 points.push(w.row);
@@ -161,23 +170,23 @@ impl Filling<'_> {
 
     fn curves(&mut self, witnesses: &[Witness], spacing: f64) {
         // Witnesses are many, and those that fill anything few.
-        let rows = 0..self.sites.len();
-        let there: Vec<usize> = rows.filter(|&i| self.sites[i].on().is_some()).collect();
+        let rows = self.sites.ids();
+        let there: Vec<Row> = rows.filter(|&i| self.sites[i].on().is_some()).collect();
         let mut places = Vec::with_capacity(there.len() * self.places.dimension());
         for &row in &there {
-            places.extend_from_slice(self.places.point(row));
+            places.extend_from_slice(self.places.point(row.index()));
         }
         let tree = BallTree::new(self.places.dimension(), &places);
-        let mut added: Vec<usize> = Vec::new();
+        let mut added: Vec<Row> = Vec::new();
         for w in nearest_first(witnesses) {
             if self.sites[w.row].on().is_some() {
                 continue;
             }
-            let counts = |row: usize| {
+            let counts = |row: Row| {
                 let kind = self.sites[row].kind();
                 kind == Some(w.on.kind) || kind == Some(StratumKind::Point)
             };
-            let close = |row: usize| self.distance(row, w.place()) < spacing * spacing;
+            let close = |row: Row| self.distance(row, w.place()) < spacing * spacing;
             let mut covered = added.iter().any(|&row| counts(row) && close(row));
             if !covered {
                 tree.within(w.place(), spacing, |k, _| {

@@ -1,6 +1,6 @@
 //! A waist, and what ties it to the points.
 
-use crosscap_core::{Error, Link, Scalar, StratifiedLandmarks};
+use crosscap_core::{Error, Landmark, Link, Row, Scalar, StratifiedLandmarks, Table};
 use serde::{Deserialize, Serialize};
 
 /// What the stratification counted.
@@ -25,7 +25,7 @@ pub struct StratifyCounts {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PointStratum {
     /// The landmark.
-    pub landmark: u32,
+    pub landmark: Landmark,
     /// Number of curves that end there.
     pub curves: usize,
     /// Number of cells that have it at their rim.
@@ -40,7 +40,7 @@ pub struct Stratification<S> {
     /// What the triangulator takes.
     pub waist: StratifiedLandmarks<S>,
     /// Row of the input that each landmark stands for.
-    pub rows: Vec<usize>,
+    pub rows: Table<Landmark, Row>,
     /// The 0-strata that a model found.
     pub points: Vec<PointStratum>,
     /// Counts for the report.
@@ -49,7 +49,7 @@ pub struct Stratification<S> {
 
 impl<S: Scalar> Stratification<S> {
     /// A waist and the rows that its landmarks stand for, counted.
-    pub fn new(waist: StratifiedLandmarks<S>, rows: Vec<usize>) -> Self {
+    pub fn new(waist: StratifiedLandmarks<S>, rows: Table<Landmark, Row>) -> Self {
         let members: usize = waist.neighborhoods.iter().map(|x| x.members.len()).sum();
         let of = |least: u8| waist.strata.iter().filter(|&&d| d <= least).count();
         Self {
@@ -74,21 +74,21 @@ impl<S: Scalar> Stratification<S> {
     /// # Errors
     /// [`Error::Law`] for the first landmark of which it is not true.
     pub fn check(&self, plugin: &str, points: usize) -> Result<(), Error> {
-        let broken = |landmark: usize, detail: String| {
+        let broken = |landmark: Landmark, detail: String| {
             Err(Error::Law {
                 plugin: plugin.into(),
                 law: "answer: every landmark stands for a row of its own, and points are at landmarks",
-                point: landmark,
+                point: landmark.index(),
                 detail,
             })
         };
         let count = self.waist.strata.len();
         if self.rows.len() != count {
             let detail = format!("{} rows for {count} landmarks", self.rows.len());
-            return broken(0, detail);
+            return broken(Landmark::default(), detail);
         }
-        let mut seen = vec![false; points];
-        for (k, &row) in self.rows.iter().enumerate() {
+        let mut seen: Table<Row, bool> = Table::filled(points, false);
+        for (k, &row) in self.rows.each() {
             match seen.get_mut(row) {
                 Some(taken) if !*taken => *taken = true,
                 Some(_) => return broken(k, format!("row {row} has a landmark already")),
@@ -96,12 +96,12 @@ impl<S: Scalar> Stratification<S> {
             }
         }
         let stray = self.points.iter().find(|p| {
-            let stratum = self.waist.strata.get(p.landmark as usize);
+            let stratum = self.waist.strata.get(p.landmark);
             stratum != Some(&0)
         });
         match stray {
             Some(p) => {
-                let k = p.landmark as usize;
+                let k = p.landmark;
                 broken(
                     k,
                     format!("a point at landmark {k} of {count}, which is none"),

@@ -11,7 +11,9 @@ use super::producer::WaistProducer;
 use super::skeleton::Skeleton;
 use super::strata::Strata;
 use super::stratification::Stratification;
-use crosscap_core::{Error, LandmarkSelector, PointCloud, Scalar, StratifiedLandmarks};
+use crosscap_core::{
+    Error, Landmark, LandmarkSelector, PointCloud, Row, Scalar, StratifiedLandmarks, Table,
+};
 
 /// Parameters of the stratification.
 #[derive(Clone, Debug)]
@@ -49,7 +51,7 @@ pub struct Cut<'a, 'p, S: Scalar> {
     skeleton: Skeleton,
     labels: Labels,
     contacts: Contacts,
-    chosen: Vec<usize>,
+    chosen: Vec<Row>,
     charts: ChartSpace<'a, S>,
     options: StratifyOptions,
 }
@@ -102,10 +104,10 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
     }
 
     /// Rows of the landmarks: the skeleton's, the chosen ones, and those of `extra` that are regular.
-    fn rows(&self, extra: &[usize]) -> Vec<usize> {
-        let mut rows = self.skeleton.rows().to_vec();
-        rows.extend(&self.chosen);
-        let mut free = vec![true; self.strata.len()];
+    fn rows(&self, extra: &[Row]) -> Table<Landmark, Row> {
+        let mut rows = self.skeleton.rows().clone();
+        rows.extend(self.chosen.iter().copied());
+        let mut free: Table<Row, bool> = Table::filled(self.strata.len(), true);
         self.chosen.iter().for_each(|&row| free[row] = false);
         for &row in extra {
             if self.may_add(row) && free[row] {
@@ -117,20 +119,20 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
 }
 
 impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
-    fn may_add(&self, row: usize) -> bool {
-        row < self.strata.len() && self.strata.is_regular(row)
+    fn may_add(&self, row: Row) -> bool {
+        row.index() < self.strata.len() && self.strata.is_regular(row)
     }
 
     fn places(&self) -> Option<&PointCloud<f64>> {
         self.strata.places()
     }
 
-    fn waist(&self, extra: &[usize]) -> Result<Stratification<S>, Error> {
+    fn waist(&self, extra: &[Row]) -> Result<Stratification<S>, Error> {
         let rows = self.rows(extra);
         let on_curves = self.skeleton.rows().len();
-        let mut strata = vec![2u8; rows.len()];
-        strata[..on_curves].fill(1);
-        strata[..self.skeleton.corners()].fill(0);
+        let mut strata = Table::filled(rows.len(), 2);
+        strata.as_mut_slice()[..on_curves].fill(1);
+        strata.as_mut_slice()[..self.skeleton.corners()].fill(0);
         let (neighborhoods, cut_edges) = Neighborhoods {
             analyzer: self.analyzer,
             strata: &self.strata,

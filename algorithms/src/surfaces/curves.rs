@@ -253,6 +253,34 @@ impl RimWalk {
     }
 }
 
+/// A straight curve.
+pub(super) fn straight(kind: CurveKind, from: [f64; 3], to: [f64; 3], count: usize) -> TrueCurve {
+    curve(kind, false, count, |t| {
+        (0..3).map(|k| from[k] + t * (to[k] - from[k])).collect()
+    })
+}
+
+/// A curve of straight parts, `count` points at equal steps of its parameter.
+pub(super) fn path(kind: CurveKind, corners: Vec<[f64; 3]>, count: usize) -> TrueCurve {
+    let closed = corners.first() == corners.last();
+    curve(kind, closed, count, move |t| {
+        let at = t * (corners.len() - 1) as f64;
+        let k = (at as usize).min(corners.len() - 2);
+        let share = at - k as f64;
+        (0..3)
+            .map(|i| corners[k][i] + share * (corners[k + 1][i] - corners[k][i]))
+            .collect()
+    })
+}
+
+/// The circle of `radius` about the z axis at a height.
+pub(super) fn circle(kind: CurveKind, radius: f64, height: f64, count: usize) -> TrueCurve {
+    curve(kind, true, count, |t| {
+        let (s, c) = libm::sincos(TAU * t);
+        vec![radius * c, radius * s, height]
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -264,3 +264,13 @@ impl Piece for Segment {
         Some(square.sqrt())
     }
 }
+
+/// Axis vectors `a` and `b` of R^`n`.
+pub(super) fn axes(n: usize, a: usize, b: usize) -> [Vec<f64>; 2] {
+    [a, b].map(|axis| (0..n).map(|k| if k == axis { 1.0 } else { 0.0 }).collect())
+}
+
+/// The square of side 2 about a center, in the plane of two coordinate axes.
+pub(super) fn square(name: &'static str, center: [f64; 3], a: usize, b: usize) -> Box<dyn Piece> {
+    Box::new(Rectangle::new(name, center.to_vec(), axes(3, a, b)))
+}

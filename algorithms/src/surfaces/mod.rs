@@ -20,14 +20,17 @@
 //! two-holed torus: measured on a grid, with a margin, and tested). Random numbers are ChaCha8 and elementary functions
 //! those of `libm`, so a seed gives the same cloud on every platform (conformations: on one).
 
+mod books;
 mod catalogue;
 mod curves;
 mod features;
 mod flat;
+mod further;
 mod henneberg;
 mod jet;
 mod motion;
 mod nearest;
+mod paper;
 mod piece;
 mod pinched;
 mod projective;
@@ -35,13 +38,15 @@ mod random;
 mod ring;
 mod round;
 mod sample;
+mod sampling;
 mod singular;
 mod strips;
+mod surface;
 mod thin;
 mod truth;
 mod two_holed_torus;
 
-pub use catalogue::{SampleSurface, catalogue};
+pub use catalogue::catalogue;
 pub use features::{Drawing, Feature, FeatureCloud, Spot};
 pub use flat::{HalfDisc, Rectangle, Segment, SwissRoll};
 pub use henneberg::Henneberg;
@@ -53,8 +58,10 @@ pub use projective::{BoySurface, ProjectivePlane, RomanSurface};
 pub use random::Random;
 pub use ring::{RingConformations, RingError, RingGeometry, RingProjection, RingSample};
 pub use round::{Cone, Cylinder, Ring, SphereCap, Torus};
-pub use sample::{Sample, Sampling};
+pub use sample::Sample;
+pub use sampling::Sampling;
 pub use strips::{KleinFigureEight, MoebiusStrip};
+pub use surface::SampleSurface;
 pub use thin::{thin, thin_randomly};
 pub use truth::{CurveKind, PaperExample, PieceTruth, PointKind, TrueCurve, TruePoint, Truth};
 pub use two_holed_torus::TwoHoledTorus;

@@ -1,18 +1,29 @@
 //! Distance to a parametrized patch without a closed form.
 
-use super::{Jet, Piece, first_fundamental_form};
+use super::{Jet, first_fundamental_form};
 use crosscap_core::{PointCloud, squared_distance};
 
 /// Grid cells along each parameter. The patches of this module bend by less than a quarter turn
 /// within two cells, so every nearest place has a grid minimum in its basin.
 const CELLS: usize = 80;
 
-/// Distance of every point to `piece`: from each local minimum of the distance over a grid of
+/// A patch as the search sees it.
+pub(super) struct Patch<'p> {
+    /// Number of coordinates of a place.
+    pub(super) dimension: usize,
+    /// The rectangle of parameters.
+    pub(super) domain: [[f64; 2]; 2],
+    /// For each parameter whether the patch ends at the ends of its range.
+    pub(super) ends: [bool; 2],
+    /// Writes the place at the given parameters.
+    pub(super) map: &'p dyn Fn([Jet; 2], &mut [Jet]),
+}
+
+/// Distance of every point to a patch: from each local minimum of the distance over a grid of
 /// parameters, Levenberg-Marquardt steps held inside the domain where the patch ends.
 /// O(cells^2) a point.
-pub(super) fn nearest_distances<P: Piece + ?Sized>(piece: &P, cloud: &PointCloud<f64>) -> Vec<f64> {
-    let n = piece.ambient_dimension();
-    let domain = piece.domain();
+pub(super) fn nearest_distances(patch: &Patch<'_>, cloud: &PointCloud<f64>) -> Vec<f64> {
+    let (n, domain) = (patch.dimension, patch.domain);
     let side = CELLS + 1;
     let parameter = |axis: usize, k: usize| {
         let [low, high] = domain[axis];
@@ -22,10 +33,8 @@ pub(super) fn nearest_distances<P: Piece + ?Sized>(piece: &P, cloud: &PointCloud
     let mut grid = Vec::with_capacity(side * side * n);
     for i in 0..side {
         for j in 0..side {
-            piece.map(
-                [parameter(0, i), parameter(1, j)].map(Jet::constant),
-                &mut place,
-            );
+            let at = [parameter(0, i), parameter(1, j)];
+            (patch.map)(at.map(Jet::constant), &mut place);
             grid.extend(place.iter().map(|x| x.value));
         }
     }
@@ -46,7 +55,7 @@ pub(super) fn nearest_distances<P: Piece + ?Sized>(piece: &P, cloud: &PointCloud
                     });
                     if lowest {
                         let start = [parameter(0, i), parameter(1, j)];
-                        best = best.min(descend(piece, p, start, here, &mut place));
+                        best = best.min(descend(patch, p, start, here, &mut place));
                     }
                 }
             }
@@ -56,17 +65,17 @@ pub(super) fn nearest_distances<P: Piece + ?Sized>(piece: &P, cloud: &PointCloud
 }
 
 /// Squared distance at the local minimum that `start` leads to.
-fn descend<P: Piece + ?Sized>(
-    piece: &P,
+fn descend(
+    patch: &Patch<'_>,
     target: &[f64],
     start: [f64; 2],
     square: f64,
     place: &mut [Jet],
 ) -> f64 {
-    let (domain, ends) = (piece.domain(), piece.ends());
+    let (domain, ends) = (patch.domain, patch.ends);
     let (mut at, mut best, mut damping) = (start, square, 1e-4);
     for _ in 0..60 {
-        piece.map([Jet::first(at[0]), Jet::second(at[1])], place);
+        (patch.map)([Jet::first(at[0]), Jet::second(at[1])], place);
         let [e, f, g] = first_fundamental_form(place);
         let [mut p, mut q] = place.iter().zip(target).fold([0.0; 2], |[p, q], (x, t)| {
             let r = t - x.value;
@@ -98,7 +107,7 @@ fn descend<P: Piece + ?Sized>(
                 next[k] = next[k].clamp(domain[k][0], domain[k][1]);
             }
         }
-        piece.map(next.map(Jet::constant), place);
+        (patch.map)(next.map(Jet::constant), place);
         let new: f64 = place
             .iter()
             .zip(target)

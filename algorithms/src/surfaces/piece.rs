@@ -1,6 +1,6 @@
 //! One piece of a surface: a parametrized patch that can be measured, sampled and approached.
 
-use super::nearest::nearest_distances;
+use super::nearest::{Patch, nearest_distances};
 use super::{Jet, Random, area_element};
 use crosscap_core::PointCloud;
 
@@ -140,7 +140,15 @@ pub trait Piece: Send + Sync {
     /// iterations from every local minimum over a grid of parameters.
     fn distances(&self, cloud: &PointCloud<f64>) -> Vec<f64> {
         let closed: Option<Vec<f64>> = cloud.iter().map(|p| self.closed_form_distance(p)).collect();
-        closed.unwrap_or_else(|| nearest_distances(self, cloud))
+        closed.unwrap_or_else(|| {
+            let patch = Patch {
+                dimension: self.ambient_dimension(),
+                domain: self.domain(),
+                ends: self.ends(),
+                map: &|parameters, place| self.map(parameters, place),
+            };
+            nearest_distances(&patch, cloud)
+        })
     }
 }
 

@@ -1,136 +1,15 @@
 //! Surfaces with every kind of singular curve and point: most of them flat pieces put together.
 
-use super::catalogue::{DISC, PROJECTIVE, SEGMENT, SPHERE, axes, crossing, plain};
-use super::curves::curve;
+use super::books::{DISCS, PAGES, book, plate_on_plate};
+use super::curves::{circle, curve, path, straight};
+use super::flat::{axes, square};
+use super::surface::SampleSurface;
+use super::truth::{DISC, PROJECTIVE, SEGMENT, SPHERE, crossing, plain};
 use super::{
-    Cone, CrossCap, CurveKind, HalfDisc, Piece, PieceTruth, PointKind, Rectangle, Ring,
-    SampleSurface, Segment, SphereCap, TrueCurve, Truth, Umbrella,
+    Cone, CrossCap, CurveKind, HalfDisc, Piece, PointKind, Ring, Segment, SphereCap, Truth,
+    Umbrella,
 };
 use std::f64::consts::TAU;
-
-/// A straight curve.
-fn straight(kind: CurveKind, from: [f64; 3], to: [f64; 3], count: usize) -> TrueCurve {
-    curve(kind, false, count, |t| {
-        (0..3).map(|k| from[k] + t * (to[k] - from[k])).collect()
-    })
-}
-
-/// A curve of straight parts, `count` points at equal steps of its parameter.
-fn path(kind: CurveKind, corners: Vec<[f64; 3]>, count: usize) -> TrueCurve {
-    let closed = corners.first() == corners.last();
-    curve(kind, closed, count, move |t| {
-        let at = t * (corners.len() - 1) as f64;
-        let k = (at as usize).min(corners.len() - 2);
-        let share = at - k as f64;
-        (0..3)
-            .map(|i| corners[k][i] + share * (corners[k + 1][i] - corners[k][i]))
-            .collect()
-    })
-}
-
-/// The circle of `radius` about the z axis at a height.
-fn circle(kind: CurveKind, radius: f64, height: f64, count: usize) -> TrueCurve {
-    curve(kind, true, count, |t| {
-        let (s, c) = libm::sincos(TAU * t);
-        vec![radius * c, radius * s, height]
-    })
-}
-
-/// The square of side 2 about a center, in the plane of two coordinate axes.
-fn square(name: &'static str, center: [f64; 3], a: usize, b: usize) -> Box<dyn Piece> {
-    Box::new(Rectangle::new(name, center.to_vec(), axes(3, a, b)))
-}
-
-/// Names of the pages of a book.
-const PAGES: [&str; 8] = [
-    "page 1", "page 2", "page 3", "page 4", "page 5", "page 6", "page 7", "page 8",
-];
-const DISCS: [PieceTruth; 8] = [DISC; 8];
-
-/// Directions of the pages of a book about the y axis.
-fn page(k: usize, pages: usize) -> [f64; 3] {
-    let (s, c) = libm::sincos(TAU * k as f64 / pages as f64);
-    [c, 0.0, s]
-}
-
-/// `pages` rectangles, 1 wide and 2 high, with one side in common, at equal angles.
-fn book(name: &'static str, summary: &'static str, pages: usize) -> SampleSurface {
-    let piece = |k: usize| -> Box<dyn Piece> {
-        let half = page(k, pages).map(|x| 0.5 * x).to_vec();
-        let sides = [half.clone(), vec![0.0, 1.0, 0.0]];
-        Box::new(Rectangle::new(PAGES[k], half, sides))
-    };
-    let cells = pages as u8;
-    SampleSurface::new(
-        name,
-        summary,
-        (0..pages).map(piece).collect(),
-        Truth {
-            books: 1,
-            ..plain([1, 0, 0], &DISCS[..pages], pages)
-        },
-        2_500 * pages,
-    )
-    .singular(move |m| vec![straight(CurveKind::Book { cells }, SPINE[0], SPINE[1], m)])
-    .bounded_by(move |m| {
-        let around = |k: usize| {
-            let [x, _, z] = page(k, pages);
-            vec![SPINE[0], [x, -1.0, z], [x, 1.0, z], SPINE[1]]
-        };
-        let rim = |k| path(CurveKind::Boundary, around(k), m);
-        (0..pages).map(rim).collect()
-    })
-    .at(PointKind::CurveEnd, SPINE.map(Vec::from))
-}
-
-/// The ends of the common side of the pages of a book.
-const SPINE: [[f64; 3]; 2] = [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
-
-/// A plate that stands on a horizontal square of side 2, `half_width` to either side of the middle.
-fn plate_on_plate(name: &'static str, summary: &'static str, half_width: f64) -> SampleSurface {
-    let sides = [vec![0.0, half_width, 0.0], vec![0.0, 0.0, 0.5]];
-    let ends = [[0.0, -half_width, 0.0], [0.0, half_width, 0.0]];
-    let across = half_width == 1.0;
-    let kind = if across {
-        PointKind::CurveEnd
-    } else {
-        PointKind::SideSheetEnd
-    };
-    SampleSurface::new(
-        name,
-        summary,
-        vec![
-            square("lying plate", [0.0; 3], 0, 1),
-            Box::new(Rectangle::new("standing plate", vec![0.0, 0.0, 0.5], sides)),
-        ],
-        Truth {
-            junction_curves: 1,
-            ..plain([1, 0, 0], &[DISC, DISC], if across { 3 } else { 2 })
-        },
-        7_500,
-    )
-    .singular(move |m| vec![straight(CurveKind::Junction, ends[0], ends[1], m)])
-    .bounded_by(move |m| {
-        let up = |[x, y, _]: [f64; 3]| [x, y, 1.0];
-        let side = |x: f64| vec![ends[0], [x, -1.0, 0.0], [x, 1.0, 0.0], ends[1]];
-        let mut rims = vec![vec![ends[0], up(ends[0]), up(ends[1]), ends[1]]];
-        if across {
-            rims.extend([side(-1.0), side(1.0)]);
-        } else {
-            let corners = [
-                [-1.0, -1.0],
-                [1.0, -1.0],
-                [1.0, 1.0],
-                [-1.0, 1.0],
-                [-1.0, -1.0],
-            ];
-            rims.push(corners.map(|[x, y]| [x, y, 0.0]).into());
-        }
-        let rims = rims.into_iter();
-        rims.map(|rim| path(CurveKind::Boundary, rim, m)).collect()
-    })
-    .at(kind, ends.map(Vec::from))
-}
 
 /// The corners of the cube of side 2 about the origin.
 fn corners() -> impl Iterator<Item = [f64; 3]> {
@@ -290,93 +169,128 @@ fn pinched() -> Vec<SampleSurface> {
     ]
 }
 
-/// Surfaces with singular curves and points of every kind.
-pub(super) fn singular_surfaces() -> Vec<SampleSurface> {
-    let axis = |k: usize, x: f64| [0, 1, 2].map(|i| if i == k { x } else { 0.0 });
+/// A place on the `k`-th coordinate axis.
+fn axis(k: usize, x: f64) -> [f64; 3] {
+    [0, 1, 2].map(|i| if i == k { x } else { 0.0 })
+}
+
+/// Two squares.
+fn two_squares() -> SampleSurface {
+    SampleSurface::new(
+        "two_squares",
+        "two squares of side 2 that cross in a segment with both ends on their boundaries",
+        vec![
+            square("lying", [0.0; 3], 0, 1),
+            square("standing", [0.0; 3], 1, 2),
+        ],
+        Truth {
+            boundary_curves: 2,
+            ..crossing([1, 0, 0], &[DISC, DISC], 1)
+        },
+        10_000,
+    )
+    .singular(move |m| vec![straight(CurveKind::Double, axis(1, -1.0), axis(1, 1.0), m)])
+    .at(
+        PointKind::CurveEnd,
+        [-1.0, 1.0].map(|x| axis(1, x).to_vec()),
+    )
+}
+
+/// Three squares.
+fn three_squares() -> SampleSurface {
+    SampleSurface::new(
+        "three_squares",
+        "three squares of side 2 that cross in three segments and a triple point",
+        vec![
+            square("lying", [0.0; 3], 0, 1),
+            square("standing", [0.0; 3], 1, 2),
+            square("facing", [0.0; 3], 0, 2),
+        ],
+        Truth {
+            boundary_curves: 3,
+            triple_points: 1,
+            ..crossing([1, 0, 0], &[DISC, DISC, DISC], 3)
+        },
+        15_000,
+    )
+    .triple(vec![vec![0.0; 3]])
+    .singular(move |m| {
+        let segment = |k| straight(CurveKind::Double, axis(k, -1.0), axis(k, 1.0), m);
+        (0..3).map(segment).collect()
+    })
+    .at(
+        PointKind::CurveEnd,
+        (0..6).map(|k| axis(k / 2, if k % 2 == 0 { -1.0 } else { 1.0 }).to_vec()),
+    )
+}
+
+/// Three half discs.
+fn three_half_discs() -> SampleSurface {
     let out = |k: usize| {
         let (s, c) = libm::sincos(TAU * k as f64 / 3.0);
         [c, 0.0, s]
     };
+    SampleSurface::new(
+        "three_half_discs",
+        "three half discs with their diameter in common, at 120 degrees",
+        (0..3)
+            .map(|k| Box::new(HalfDisc::new(PAGES[k], 1.0, axis(1, 1.0), out(k))) as Box<dyn Piece>)
+            .collect(),
+        Truth {
+            junction_curves: 1,
+            ..plain([1, 0, 0], &DISCS[..3], 3)
+        },
+        7_500,
+    )
+    .singular(move |m| {
+        vec![straight(
+            CurveKind::Junction,
+            axis(1, -1.0),
+            axis(1, 1.0),
+            m,
+        )]
+    })
+    .bounded_by(move |m| {
+        let rim = |k: usize| {
+            curve(CurveKind::Boundary, false, m, move |t| {
+                let (s, c) = libm::sincos(0.5 * TAU * t);
+                let [x, _, z] = out(k);
+                vec![s * x, c, s * z]
+            })
+        };
+        (0..3).map(rim).collect()
+    })
+    .at(
+        PointKind::CurveEnd,
+        [-1.0, 1.0].map(|x| axis(1, x).to_vec()),
+    )
+}
+
+/// A segment that stands on a sphere.
+fn sphere_with_hair() -> SampleSurface {
+    SampleSurface::new(
+        "sphere_with_hair",
+        "the unit sphere with a segment that stands on it",
+        vec![
+            Box::new(SphereCap::sphere("sphere", [0.0; 3], 1.0)),
+            Box::new(Segment::new(
+                "hair",
+                [vec![0.0, 0.0, 1.0], vec![0.0, 0.0, 2.0]],
+            )),
+        ],
+        plain([1, 0, 1], &[SPHERE, SEGMENT], 0),
+        8_000,
+    )
+    .at(PointKind::Isolated, [vec![0.0, 0.0, 1.0]])
+}
+
+/// Surfaces with singular curves and points of every kind.
+pub(super) fn singular_surfaces() -> Vec<SampleSurface> {
     let mut all = pinched();
     all.extend([
-        SampleSurface::new(
-            "two_squares",
-            "two squares of side 2 that cross in a segment with both ends on their boundaries",
-            vec![
-                square("lying", [0.0; 3], 0, 1),
-                square("standing", [0.0; 3], 1, 2),
-            ],
-            Truth {
-                boundary_curves: 2,
-                ..crossing([1, 0, 0], &[DISC, DISC], 1)
-            },
-            10_000,
-        )
-        .singular(move |m| vec![straight(CurveKind::Double, axis(1, -1.0), axis(1, 1.0), m)])
-        .at(
-            PointKind::CurveEnd,
-            [-1.0, 1.0].map(|x| axis(1, x).to_vec()),
-        ),
-        SampleSurface::new(
-            "three_squares",
-            "three squares of side 2 that cross in three segments and a triple point",
-            vec![
-                square("lying", [0.0; 3], 0, 1),
-                square("standing", [0.0; 3], 1, 2),
-                square("facing", [0.0; 3], 0, 2),
-            ],
-            Truth {
-                boundary_curves: 3,
-                triple_points: 1,
-                ..crossing([1, 0, 0], &[DISC, DISC, DISC], 3)
-            },
-            15_000,
-        )
-        .triple(vec![vec![0.0; 3]])
-        .singular(move |m| {
-            let segment = |k| straight(CurveKind::Double, axis(k, -1.0), axis(k, 1.0), m);
-            (0..3).map(segment).collect()
-        })
-        .at(
-            PointKind::CurveEnd,
-            (0..6).map(|k| axis(k / 2, if k % 2 == 0 { -1.0 } else { 1.0 }).to_vec()),
-        ),
-        SampleSurface::new(
-            "three_half_discs",
-            "three half discs with their diameter in common, at 120 degrees",
-            (0..3)
-                .map(|k| {
-                    Box::new(HalfDisc::new(PAGES[k], 1.0, axis(1, 1.0), out(k))) as Box<dyn Piece>
-                })
-                .collect(),
-            Truth {
-                junction_curves: 1,
-                ..plain([1, 0, 0], &DISCS[..3], 3)
-            },
-            7_500,
-        )
-        .singular(move |m| {
-            vec![straight(
-                CurveKind::Junction,
-                axis(1, -1.0),
-                axis(1, 1.0),
-                m,
-            )]
-        })
-        .bounded_by(move |m| {
-            let rim = |k: usize| {
-                curve(CurveKind::Boundary, false, m, move |t| {
-                    let (s, c) = libm::sincos(0.5 * TAU * t);
-                    let [x, _, z] = out(k);
-                    vec![s * x, c, s * z]
-                })
-            };
-            (0..3).map(rim).collect()
-        })
-        .at(
-            PointKind::CurveEnd,
-            [-1.0, 1.0].map(|x| axis(1, x).to_vec()),
-        ),
+        two_squares(),
+        three_squares(),
+        three_half_discs(),
         plate_on_plate(
             "plate_on_plate",
             "a plate that stands on the middle of a larger one",
@@ -389,20 +303,7 @@ pub(super) fn singular_surfaces() -> Vec<SampleSurface> {
         ),
         book("book_5", "five pages that meet in one side", 5),
         book("book_8", "eight pages that meet in one side", 8),
-        SampleSurface::new(
-            "sphere_with_hair",
-            "the unit sphere with a segment that stands on it",
-            vec![
-                Box::new(SphereCap::sphere("sphere", [0.0; 3], 1.0)),
-                Box::new(Segment::new(
-                    "hair",
-                    [vec![0.0, 0.0, 1.0], vec![0.0, 0.0, 2.0]],
-                )),
-            ],
-            plain([1, 0, 1], &[SPHERE, SEGMENT], 0),
-            8_000,
-        )
-        .at(PointKind::Isolated, [vec![0.0, 0.0, 1.0]]),
+        sphere_with_hair(),
     ]);
     all.extend(boxes());
     all.extend(cones());

@@ -158,3 +158,56 @@ pub struct TrueCurve {
     /// Points exactly on the curve, in order; the first is not repeated at the end.
     pub points: PointCloud<f64>,
 }
+
+pub(super) const SPHERE: PieceTruth = kind("sphere", true, 2, 0);
+pub(super) const TORUS: PieceTruth = kind("torus", true, 0, 0);
+pub(super) const DISC: PieceTruth = kind("disc", true, 1, 1);
+pub(super) const ANNULUS: PieceTruth = kind("annulus", true, 0, 2);
+pub(super) const KLEIN: PieceTruth = kind("klein bottle", false, 0, 0);
+pub(super) const GENUS_2: PieceTruth = kind("double torus", true, -2, 0);
+pub(super) const MOEBIUS: PieceTruth = kind("moebius strip", false, 0, 1);
+pub(super) const SEGMENT: PieceTruth = kind("segment", true, 1, 0);
+pub(super) const PROJECTIVE: PieceTruth = kind("projective plane", false, 1, 0);
+
+const fn kind(name: &'static str, orientable: bool, euler: i64, boundaries: usize) -> PieceTruth {
+    PieceTruth {
+        name,
+        orientable,
+        euler,
+        boundaries,
+    }
+}
+
+/// Truth of a surface without torsion or singular strata.
+pub(super) const fn plain(
+    betti: [usize; 3],
+    pieces: &'static [PieceTruth],
+    boundary_curves: usize,
+) -> Truth {
+    Truth {
+        betti,
+        betti_mod_2: betti,
+        torsion: &[],
+        pieces,
+        double_curves: 0,
+        junction_curves: 0,
+        boundary_curves,
+        triple_points: 0,
+        isolated_crossings: 0,
+        pinch_points: 0,
+        books: 0,
+        creases: 0,
+    }
+}
+
+/// Truth of closed pieces that cross in so many double curves.
+pub(super) const fn crossing(
+    betti: [usize; 3],
+    pieces: &'static [PieceTruth],
+    double_curves: usize,
+) -> Truth {
+    Truth {
+        double_curves,
+        ..plain(betti, pieces, 0)
+    }
+}

@@ -1,54 +1,61 @@
 //! The growing complex: triangles at every landmark, and a log that takes steps back.
 
+use super::Triangle;
 use super::parts::AdvancingFront;
-use crosscap_core::{Scalar, StratifiedLandmarks};
+use crosscap_core::{Landmark, Scalar, StratifiedLandmarks, Table};
 
 /// The growing complex.
 pub(super) struct Front<'a, S: Scalar> {
     pub(super) parts: &'a AdvancingFront<'a>,
     pub(super) input: &'a StratifiedLandmarks<S>,
-    pub(super) triangles: Vec<[u32; 3]>,
-    free: Vec<u32>,
+    pub(super) triangles: Table<Triangle, [Landmark; 3]>,
+    free: Vec<Triangle>,
     /// Triangles at each landmark.
-    pub(super) incident: Vec<Vec<u32>>,
+    pub(super) incident: Table<Landmark, Vec<Triangle>>,
     /// Chain neighbors of each landmark, with the cells that meet in the edge.
-    pub(super) curve: Vec<Vec<(u32, u8)>>,
-    pub(super) dropped: Vec<bool>,
+    pub(super) curve: Table<Landmark, Vec<(Landmark, u8)>>,
+    pub(super) dropped: Table<Landmark, bool>,
     /// The round in which a landmark was located last (high half), and its position then.
-    at: Vec<u64>,
+    at: Table<Landmark, u64>,
     round: u64,
     /// Triangles added (`true`) and removed since the last mark.
-    log: Vec<(bool, [u32; 3])>,
+    log: Vec<(bool, [Landmark; 3])>,
+}
+
+impl Triangle {
+    /// Corners of a triangle that was removed, until its number is given to another.
+    const GONE: [Landmark; 3] = [Landmark::new(u32::MAX as usize); 3];
 }
 
 impl<'a, S: Scalar> Front<'a, S> {
     /// No triangle yet.
     pub(super) fn new(parts: &'a AdvancingFront<'a>, input: &'a StratifiedLandmarks<S>) -> Self {
         let count = input.strata.len();
-        let mut curve = vec![Vec::new(); count];
+        let mut curve: Table<Landmark, _> = Table::filled(count, Vec::new());
         for e in &input.curve_edges {
-            let [a, b] = e.ends;
-            curve[a as usize].push((b, e.cells));
-            curve[b as usize].push((a, e.cells));
+            let [a, b] = e.landmarks();
+            curve[a].push((b, e.cells));
+            curve[b].push((a, e.cells));
         }
         Self {
             parts,
             input,
-            triangles: Vec::new(),
+            triangles: Table::default(),
             free: Vec::new(),
-            incident: vec![Vec::new(); count],
+            incident: Table::filled(count, Vec::new()),
             curve,
-            dropped: vec![false; count],
-            at: vec![0; count],
+            dropped: Table::filled(count, false),
+            at: Table::filled(count, 0),
             round: 0,
             log: Vec::new(),
         }
     }
 
-    /// The triangles that are there.
+    /// The triangles that are there, as a complex has them.
     pub(super) fn standing(&self) -> Vec<[u32; 3]> {
         let all = self.triangles.iter().copied();
-        all.filter(|t| t[0] != u32::MAX).collect()
+        let there = all.filter(|t| *t != Triangle::GONE);
+        there.map(|t| t.map(u32::from)).collect()
     }
 
     /// Forgets what was done so far: a roll back goes no farther than this.
@@ -57,49 +64,46 @@ impl<'a, S: Scalar> Front<'a, S> {
     }
 
     /// Corners of all triangles that were added or removed since the mark.
-    pub(super) fn moved(&self) -> Vec<u32> {
+    pub(super) fn moved(&self) -> Vec<Landmark> {
         self.log.iter().flat_map(|l| l.1).collect()
     }
 
     /// Makes `position` answer for these members.
-    pub(super) fn locate(&mut self, members: &[u32]) {
+    pub(super) fn locate(&mut self, members: &[Landmark]) {
         self.round += 1;
         for (i, &m) in (0_u64..).zip(members) {
-            self.at[m as usize] = (self.round << 32) + i;
+            self.at[m] = (self.round << 32) + i;
         }
     }
 
-    pub(super) fn position(&self, landmark: u32) -> Option<usize> {
-        let at = self.at[landmark as usize].wrapping_sub(self.round << 32);
+    pub(super) fn position(&self, landmark: Landmark) -> Option<usize> {
+        let at = self.at[landmark].wrapping_sub(self.round << 32);
         (at <= u64::from(u32::MAX)).then_some(at as usize)
     }
 
     /// Number of triangles on an edge.
-    pub(super) fn count(&self, a: u32, b: u32) -> usize {
-        self.incident[a as usize]
+    pub(super) fn count(&self, a: Landmark, b: Landmark) -> usize {
+        self.incident[a]
             .iter()
-            .filter(|&&t| self.triangles[t as usize].contains(&b))
+            .filter(|&&t| self.triangles[t].contains(&b))
             .count()
     }
 
     /// Cells that meet in a chain edge; `None` for any other edge.
-    pub(super) fn cells(&self, a: u32, b: u32) -> Option<u8> {
-        self.curve[a as usize]
-            .iter()
-            .find(|x| x.0 == b)
-            .map(|x| x.1)
+    pub(super) fn cells(&self, a: Landmark, b: Landmark) -> Option<u8> {
+        self.curve[a].iter().find(|x| x.0 == b).map(|x| x.1)
     }
 
-    pub(super) fn holds(&self, sorted: [u32; 3]) -> bool {
-        self.incident[sorted[0] as usize]
+    pub(super) fn holds(&self, sorted: [Landmark; 3]) -> bool {
+        self.incident[sorted[0]]
             .iter()
-            .any(|&t| self.triangles[t as usize] == sorted)
+            .any(|&t| self.triangles[t] == sorted)
     }
 
     /// Whether two landmarks of one curve are few steps apart along it: an edge between them
     /// would cut the corner of the chain. Steps do not run through points (stratum 0).
-    pub(super) fn shortcut(&self, a: u32, b: u32) -> bool {
-        if self.input.strata[a as usize] > 1 || self.input.strata[b as usize] > 1 {
+    pub(super) fn shortcut(&self, a: Landmark, b: Landmark) -> bool {
+        if self.input.strata[a] > 1 || self.input.strata[b] > 1 {
             return false;
         }
         let mut reached = vec![a];
@@ -108,10 +112,10 @@ impl<'a, S: Scalar> Front<'a, S> {
             let until = reached.len();
             for k in from..until {
                 let v = reached[k];
-                if v != a && self.input.strata[v as usize] == 0 {
+                if v != a && self.input.strata[v] == 0 {
                     continue;
                 }
-                for &(next, _) in &self.curve[v as usize] {
+                for &(next, _) in &self.curve[v] {
                     if next == b {
                         return true;
                     }
@@ -125,38 +129,40 @@ impl<'a, S: Scalar> Front<'a, S> {
         false
     }
 
-    pub(super) fn add(&mut self, mut corners: [u32; 3]) {
+    pub(super) fn add(&mut self, mut corners: [Landmark; 3]) {
         corners.sort_unstable();
         let t = match self.free.pop() {
             Some(t) => {
-                self.triangles[t as usize] = corners;
+                self.triangles[t] = corners;
                 t
             }
-            None => {
-                self.triangles.push(corners);
-                (self.triangles.len() - 1) as u32
-            }
+            None => self.triangles.push(corners),
         };
         for c in corners {
-            self.incident[c as usize].push(t);
+            self.incident[c].push(t);
         }
         self.log.push((true, corners));
     }
 
-    fn remove(&mut self, t: u32) {
-        self.log.push((false, self.triangles[t as usize]));
-        for c in self.triangles[t as usize] {
-            self.incident[c as usize].retain(|&x| x != t);
+    fn remove(&mut self, t: Triangle) {
+        self.log.push((false, self.triangles[t]));
+        for c in self.triangles[t] {
+            self.incident[c].retain(|&x| x != t);
         }
-        self.triangles[t as usize] = [u32::MAX; 3];
+        self.triangles[t] = Triangle::GONE;
         self.free.push(t);
     }
 
     /// Removes the triangles at `v` whose corners all satisfy `within`; the landmarks that lost one are
     /// appended to `touched`.
-    pub(super) fn clear(&mut self, v: u32, within: impl Fn(u32) -> bool, touched: &mut Vec<u32>) {
-        for t in self.incident[v as usize].clone() {
-            let corners = self.triangles[t as usize];
+    pub(super) fn clear(
+        &mut self,
+        v: Landmark,
+        within: impl Fn(Landmark) -> bool,
+        touched: &mut Vec<Landmark>,
+    ) {
+        for t in self.incident[v].clone() {
+            let corners = self.triangles[t];
             if corners.iter().all(|&c| within(c)) {
                 touched.extend(corners);
                 self.remove(t);
@@ -168,10 +174,10 @@ impl<'a, S: Scalar> Front<'a, S> {
     pub(super) fn roll_back(&mut self) {
         while let Some((added, corners)) = self.log.pop() {
             if added {
-                let t = self.incident[corners[0] as usize]
+                let t = self.incident[corners[0]]
                     .iter()
                     .copied()
-                    .find(|&t| self.triangles[t as usize] == corners);
+                    .find(|&t| self.triangles[t] == corners);
                 if let Some(t) = t {
                     self.remove(t);
                 }

@@ -1,20 +1,21 @@
 //! What happens when a star cannot be closed.
 
+use super::Star;
 use super::run::Run;
-use crosscap_core::{Error, Scalar};
+use crosscap_core::{Error, Landmark, Scalar};
 
 impl<S: Scalar> Run<'_, '_, S> {
     /// Tries to close the star of `v` by repairs, with `drop` also by giving up a landmark.
     /// `true` when one succeeded.
-    pub(super) fn mend(&mut self, v: u32, k: usize, drop: bool) -> Result<bool, Error> {
+    pub(super) fn mend(&mut self, v: Landmark, k: Star, drop: bool) -> Result<bool, Error> {
         if !self.front.parts.repair || self.attempts == 0 {
             return Ok(false);
         }
-        let members: Vec<u32> = self.front.input.neighborhoods[k]
+        let members: Vec<Landmark> = self.front.input.neighborhoods[k.index()]
             .members
             .iter()
             .copied()
-            .filter(|&m| !self.front.dropped[m as usize])
+            .filter(|&m| !self.front.dropped[m])
             .collect();
         let tuning = self.front.parts.tuning;
         for reach in tuning.tears {
@@ -27,8 +28,8 @@ impl<S: Scalar> Run<'_, '_, S> {
         if !drop {
             return Ok(false);
         }
-        let cell = |u: &u32| self.front.input.strata[*u as usize] == 2;
-        let droppable: Vec<u32> = members
+        let cell = |u: &Landmark| self.front.input.strata[*u] == 2;
+        let droppable: Vec<Landmark> = members
             .iter()
             .copied()
             .filter(cell)
@@ -48,11 +49,11 @@ impl<S: Scalar> Run<'_, '_, S> {
     /// One repair, all or nothing.
     fn attempt(
         &mut self,
-        v: u32,
-        k: usize,
-        members: &[u32],
+        v: Landmark,
+        k: Star,
+        members: &[Landmark],
         reach: usize,
-        drop: Option<u32>,
+        drop: Option<Landmark>,
     ) -> Result<bool, Error> {
         self.attempts = match self.attempts.checked_sub(1) {
             Some(left) => left,
@@ -65,8 +66,10 @@ impl<S: Scalar> Run<'_, '_, S> {
             if !good {
                 break;
             }
-            let home = self.home[u as usize];
-            if self.done[u as usize] && home != usize::MAX && !self.front.dropped[u as usize] {
+            if let Some(home) = self.home[u]
+                && self.done[u]
+                && !self.front.dropped[u]
+            {
                 good = self.visit(home)?;
             }
         }
@@ -75,11 +78,11 @@ impl<S: Scalar> Run<'_, '_, S> {
             // Landmarks that gained triangles and are not visited yet are on the front.
             let reached = self.front.moved();
             self.queue
-                .extend(reached.into_iter().filter(|&u| !self.done[u as usize]));
+                .extend(reached.into_iter().filter(|&u| !self.done[u]));
         } else {
             self.front.roll_back();
             if let Some(u) = drop {
-                self.front.dropped[u as usize] = false;
+                self.front.dropped[u] = false;
             }
         }
         Ok(good)
@@ -87,17 +90,23 @@ impl<S: Scalar> Run<'_, '_, S> {
 
     /// Removes the triangles at `v` and at its nearest members, and those of a landmark that is given up. Returns
     /// the landmarks that lost one, but for `v`: members first, in their order.
-    fn tear(&mut self, v: u32, members: &[u32], reach: usize, drop: Option<u32>) -> Vec<u32> {
+    fn tear(
+        &mut self,
+        v: Landmark,
+        members: &[Landmark],
+        reach: usize,
+        drop: Option<Landmark>,
+    ) -> Vec<Landmark> {
         let mut touched = Vec::new();
         // A landmark on a curve has triangles in other cells, which are none of this chart's business.
         let mut sorted = members.to_vec();
         sorted.sort_unstable();
-        let inside = |c: u32| sorted.binary_search(&c).is_ok();
-        let on_curve = self.front.input.strata[v as usize] < 2;
-        let within = |c: u32| !on_curve || inside(c);
+        let inside = |c: Landmark| sorted.binary_search(&c).is_ok();
+        let on_curve = self.front.input.strata[v] < 2;
+        let within = |c: Landmark| !on_curve || inside(c);
         self.front.clear(v, within, &mut touched);
         for &m in members.iter().skip(1).take(reach) {
-            if self.front.input.strata[m as usize] == 2 {
+            if self.front.input.strata[m] == 2 {
                 self.front.clear(m, |_| true, &mut touched);
             } else {
                 self.front.clear(m, inside, &mut touched);
@@ -105,9 +114,9 @@ impl<S: Scalar> Run<'_, '_, S> {
         }
         if let Some(u) = drop {
             self.front.clear(u, |_| true, &mut touched);
-            self.front.dropped[u as usize] = true;
+            self.front.dropped[u] = true;
         }
-        let mut order: Vec<u32> = members.to_vec();
+        let mut order: Vec<Landmark> = members.to_vec();
         touched.sort_unstable();
         touched.dedup();
         order.retain(|m| touched.binary_search(m).is_ok() && *m != v);

@@ -1,12 +1,13 @@
 //! The advancing front: which star is closed next.
 
+use super::Star;
 use super::front::Front;
 use super::parts::AdvancingFront;
 use super::star::Patch;
 use crate::audit::{AuditedChart, AuditedRule, AuditedTest, Watch, known_pairs};
 use crosscap_core::{
-    Complex, CurveEdge, Error, Incomplete, Scalar, StratifiedLandmarks, Triangulation,
-    TriangulationCounts, Triangulator,
+    Complex, CurveEdge, Error, Incomplete, Landmark, Scalar, StratifiedLandmarks, Table,
+    Triangulation, TriangulationCounts, Triangulator,
 };
 use std::collections::VecDeque;
 use std::sync::atomic::AtomicU32;
@@ -60,9 +61,7 @@ impl<S: Scalar> Triangulator<S> for AdvancingFront<'_> {
         let edges: Vec<CurveEdge> = input.curve_edges.clone();
         Ok(Triangulation {
             complex: Complex::new(count, front.standing(), edges)?,
-            dropped: (0..count as u32)
-                .filter(|&v| front.dropped[v as usize])
-                .collect(),
+            dropped: (front.dropped.ids().filter(|&v| front.dropped[v])).collect(),
             incomplete,
             counts,
         })
@@ -78,13 +77,13 @@ pub(super) struct Run<'r, 'a, S: Scalar> {
     /// What the plug-ins did wrong.
     watch: &'r Watch,
     pub(super) front: &'r mut Front<'a, S>,
-    /// Neighborhood of each landmark of a cell.
-    pub(super) home: Vec<usize>,
+    /// Neighborhood of each landmark of a cell; none of one on a curve.
+    pub(super) home: Table<Landmark, Option<Star>>,
     /// Neighborhoods of each landmark on a curve, one a cell.
-    sectors: Vec<Vec<usize>>,
-    pub(super) done: Vec<bool>,
-    pub(super) queue: VecDeque<u32>,
-    kept: Vec<u32>,
+    sectors: Table<Landmark, Vec<Star>>,
+    pub(super) done: Table<Landmark, bool>,
+    pub(super) queue: VecDeque<Landmark>,
+    kept: Vec<Landmark>,
     pub(super) counts: TriangulationCounts,
     incomplete: Vec<Incomplete>,
     /// Repairs that may still be tried.
@@ -95,13 +94,14 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
     fn new(watch: &'r Watch, front: &'r mut Front<'a, S>) -> Self {
         let (input, tuning) = (front.input, front.parts.tuning);
         let count = input.strata.len();
-        let mut home = vec![usize::MAX; count];
-        let mut sectors: Vec<Vec<usize>> = vec![Vec::new(); count];
+        let mut home = Table::filled(count, None);
+        let mut sectors: Table<Landmark, Vec<Star>> = Table::filled(count, Vec::new());
         for (k, near) in input.neighborhoods.iter().enumerate() {
-            if input.strata[near.center as usize] == 2 {
-                home[near.center as usize] = k;
+            let star = Star::new(k);
+            if input.strata[near.center] == 2 {
+                home[near.center] = Some(star);
             } else {
-                sectors[near.center as usize].push(k);
+                sectors[near.center].push(star);
             }
         }
         Self {
@@ -109,7 +109,7 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
             front,
             home,
             sectors,
-            done: vec![false; count],
+            done: Table::filled(count, false),
             queue: VecDeque::new(),
             kept: Vec::new(),
             counts: TriangulationCounts::default(),
@@ -125,10 +125,7 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
         // Once more for those that stayed open, now that their surroundings are complete; a
         // landmark is given up only then, since a hole can be closed only from all around.
         for (v, k) in std::mem::take(&mut open) {
-            if !self.front.dropped[v as usize]
-                && !self.visit_or_undo(k)?
-                && !self.mend(v, k, true)?
-            {
+            if !self.front.dropped[v] && !self.visit_or_undo(k)? && !self.mend(v, k, true)? {
                 open.push((v, k));
             }
         }
@@ -144,13 +141,15 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
 
     /// Visits every landmark of a cell, and tells those whose stars stayed open with their neighborhoods;
     /// `None` where the first of them ends everything.
-    fn advance_everywhere(&mut self) -> Result<Option<Vec<(u32, usize)>>, Error> {
+    fn advance_everywhere(&mut self) -> Result<Option<Vec<(Landmark, Star)>>, Error> {
         let mut open = Vec::new();
-        for seed in 0..self.home.len() as u32 {
+        for seed in self.done.ids() {
             self.queue.push_back(seed);
             while let Some(v) = self.queue.pop_front() {
-                let k = self.home[v as usize];
-                if self.done[v as usize] || self.front.dropped[v as usize] || k == usize::MAX {
+                let Some(k) = self.home[v] else {
+                    continue;
+                };
+                if self.done[v] || self.front.dropped[v] {
                     continue;
                 }
                 if !self.visit_or_undo(k)? && !self.mend(v, k, false)? {
@@ -160,7 +159,7 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
                     }
                     open.push((v, k));
                 }
-                self.done[v as usize] = true;
+                self.done[v] = true;
                 self.advance(v);
             }
         }
@@ -168,7 +167,7 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
     }
 
     /// Closes the stars of curve landmarks, which no visit of a cell has to close; those that stayed open.
-    fn close_curves(&mut self) -> Result<Vec<(u32, usize)>, Error> {
+    fn close_curves(&mut self) -> Result<Vec<(Landmark, Star)>, Error> {
         let mut open = Vec::new();
         let passes = if self.front.parts.rules.curve_stars {
             self.front.parts.tuning.curve_passes
@@ -178,8 +177,8 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
         for _ in 0..passes {
             open.clear();
             let before = self.counts.repairs;
-            for v in 0..self.home.len() as u32 {
-                for k in self.sectors[v as usize].clone() {
+            for v in self.done.ids() {
+                for k in self.sectors[v].clone() {
                     if !self.visit_or_undo(k)? && !self.mend(v, k, true)? {
                         open.push((v, k));
                     }
@@ -193,11 +192,11 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
     }
 
     /// Queues the neighbors of `v`.
-    fn advance(&mut self, v: u32) {
-        let mut next: Vec<u32> = self.front.incident[v as usize]
+    fn advance(&mut self, v: Landmark) {
+        let mut next: Vec<Landmark> = self.front.incident[v]
             .iter()
-            .flat_map(|&t| self.front.triangles[t as usize])
-            .filter(|&u| !self.done[u as usize])
+            .flat_map(|&t| self.front.triangles[t])
+            .filter(|&u| !self.done[u])
             .collect();
         next.sort_unstable();
         next.dedup();
@@ -205,12 +204,13 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
     }
 
     /// Closes the star of a neighborhood's center; `false` when it stays open.
-    pub(super) fn visit(&mut self, k: usize) -> Result<bool, Error> {
+    pub(super) fn visit(&mut self, k: Star) -> Result<bool, Error> {
         self.counts.visits += 1;
         let input = self.front.input;
         let mut kept = std::mem::take(&mut self.kept);
-        self.watch.enter(input.neighborhoods[k].center);
-        let mut patch = Patch::new(self.front, &input.neighborhoods[k], &mut kept)?;
+        let near = &input.neighborhoods[k.index()];
+        self.watch.enter(near.center);
+        let mut patch = Patch::new(self.front, near, &mut kept)?;
         let closed = patch.close(self.front);
         self.kept = kept;
         self.watch.none()?;
@@ -218,7 +218,7 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
     }
 
     /// The same, leaving no part of a star behind that stays open.
-    fn visit_or_undo(&mut self, k: usize) -> Result<bool, Error> {
+    fn visit_or_undo(&mut self, k: Star) -> Result<bool, Error> {
         self.front.mark();
         let closed = self.visit(k)?;
         if !closed {

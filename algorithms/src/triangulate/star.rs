@@ -2,12 +2,12 @@
 
 use super::front::Front;
 use super::rule::circumradius;
-use crosscap_core::{CellNeighborhood, ChartTriangle, Error, Scalar};
+use crosscap_core::{CellNeighborhood, ChartTriangle, Error, Landmark, Scalar};
 use robust::{Coord, orient2d};
 
 /// A neighborhood laid out in the plane with the triangles that are already in it.
 pub(super) struct Patch<'a> {
-    members: &'a [u32],
+    members: &'a [Landmark],
     /// Distances of the members, row after row.
     distances: Vec<f64>,
     places: Vec<[f64; 2]>,
@@ -45,16 +45,11 @@ impl<'a> Patch<'a> {
     pub(super) fn new<S: Scalar>(
         front: &mut Front<'_, S>,
         near: &'a CellNeighborhood,
-        kept: &'a mut Vec<u32>,
+        kept: &'a mut Vec<Landmark>,
     ) -> Result<Self, Error> {
         kept.clear();
-        kept.extend(
-            near.members
-                .iter()
-                .copied()
-                .filter(|&m| !front.dropped[m as usize]),
-        );
-        let members: &'a [u32] = kept;
+        kept.extend(near.members.iter().copied().filter(|&m| !front.dropped[m]));
+        let members: &'a [Landmark] = kept;
         let k = members.len();
         front.locate(members);
         // Neighborhoods keep the distances of all their pairs.
@@ -83,15 +78,15 @@ impl<'a> Patch<'a> {
             walls: Vec::new(),
         };
         for (i, &m) in members.iter().enumerate() {
-            for &t in &front.incident[m as usize] {
-                let corners = front.triangles[t as usize];
+            for &t in &front.incident[m] {
+                let corners = front.triangles[t];
                 // Each triangle once: from the corner that comes first in the chart.
                 let at = corners.map(|c| front.position(c));
                 if at.iter().all(|a| a.is_some_and(|a| a >= i)) {
                     patch.push(at.map(|a| a.unwrap_or(0)));
                 }
             }
-            for &(other, _) in &front.curve[m as usize] {
+            for &(other, _) in &front.curve[m] {
                 if let Some(j) = front.position(other).filter(|&j| j > i) {
                     patch.walls.push((i, j));
                 }
@@ -119,7 +114,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Other corners of the triangles of the chart on the edge of members `a`, `b`.
-    fn across(&self, a: u32, b: u32) -> impl Iterator<Item = u32> + '_ {
+    fn across(&self, a: Landmark, b: Landmark) -> impl Iterator<Item = Landmark> + '_ {
         self.triangles.iter().filter_map(move |t| {
             let on = t.corners.contains(&a) && t.corners.contains(&b);
             on.then(|| t.corners.iter().copied().find(|&c| c != a && c != b))
@@ -148,7 +143,7 @@ impl<'a> Patch<'a> {
     /// that of the corner of the triangle that it has.
     fn dangling<S: Scalar>(&self, front: &Front<'_, S>) -> Option<(usize, Option<usize>)> {
         let center = self.members[0];
-        let mut ends: Vec<u32> = self
+        let mut ends: Vec<Landmark> = self
             .triangles
             .iter()
             .filter(|t| t.corners.contains(&center))
@@ -163,11 +158,11 @@ impl<'a> Patch<'a> {
             .collect();
         ends.sort_unstable();
         ends.dedup();
-        let on_curve = front.input.strata[center as usize] < 2;
+        let on_curve = front.input.strata[center] < 2;
         if ends.is_empty() {
             // A curve that this cell does not touch asks for nothing; a point inside of it does.
-            let lone = front.curve[center as usize].iter().all(|c| c.1 == 0);
-            if on_curve && !(lone && front.input.strata[center as usize] == 0) {
+            let lone = front.curve[center].iter().all(|c| c.1 == 0);
+            if on_curve && !(lone && front.input.strata[center] == 0) {
                 return None;
             }
             // A fresh star starts from the nearest member that can be joined.
@@ -181,7 +176,7 @@ impl<'a> Patch<'a> {
         }
         let mut best: Option<(f64, usize, Option<usize>)> = None;
         for end in ends {
-            let has: Vec<u32> = self.across(center, end).collect();
+            let has: Vec<Landmark> = self.across(center, end).collect();
             // A triangle of an ordinary edge counts even where the chart does not show it.
             let closed = match front.cells(center, end) {
                 Some(_) => !has.is_empty(),

@@ -4,13 +4,20 @@
 //! separation dl), so that none of them knows the unit of the data. What was measured is in the guide, chapter
 //! on decisions; what is not said there to be measured was chosen once and never varied.
 
+mod ends;
 mod front;
 mod models;
+mod preparation;
 
+pub use ends::{BookEndTuning, BookTuning, CurveEndTuning, PinchPointTuning, RimTuning};
 pub use front::FrontTuning;
 pub use models::{
     BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,
     TwoPlanesTuning, YJunctionTuning,
+};
+
+pub use preparation::{
+    NoiseTuning, OutlierTuning, PreparationTuning, ProjectionTuning, ResolutionTuning,
 };
 
 use serde::Serialize;
@@ -131,6 +138,10 @@ pub struct EndTuning {
     pub attempts: usize,
     /// Gaps of the curves about an end that are wider than this are filled by the points beside them.
     pub gap: f64,
+    /// How far the labels of a region reach beyond it, in eps: farther than the edges of the graph that cells are flooded in.
+    /// Without, no fit knew both ends of an edge across the cut between two regions, or across a strip between
+    /// them, and the four cells were one there.
+    pub overlap: f64,
     /// Farthest of the innermost landmarks of the cells about an end, in dl: with those of a random choice
     /// the triangle between two curves was often that of two cells.
     pub innermost: f64,
@@ -146,6 +157,7 @@ impl EndTuning {
         off_center: 0.15,
         attempts: 5,
         gap: 0.1,
+        overlap: 0.4,
         innermost: 1.2,
     };
 }
@@ -250,6 +262,9 @@ pub struct RefinementTuning {
     /// Nearest points of one that is left behind, half of which are at least half as far from the mesh: an outlier
     /// has no such company.
     pub company: usize,
+    /// Share of its distance from the mesh within which the same half may be instead: at a tip, where the mesh is soon
+    /// reached, a point is alone so far from it. The nearest points of an outlier are on the mesh.
+    pub nearer: f64,
     /// Rounds of landmarks at points that are left behind.
     pub mends: usize,
 }
@@ -265,6 +280,7 @@ impl RefinementTuning {
         open_share: 0.01,
         behind: 0.6,
         company: 4,
+        nearer: 0.75,
         mends: 3,
     };
 }

@@ -3,6 +3,7 @@
 //! Names that several models share mean the same in each. Their values differ where the models see
 //! different things: the more sheets, the fewer points on each, and the wider a plane has to be while it is looked for.
 
+use super::ends::{BookEndTuning, BookTuning, PinchPointTuning};
 use serde::Serialize;
 
 /// When the models that come with the program believe a fit.
@@ -20,6 +21,12 @@ pub struct ModelTuning {
     pub boundary: BoundaryTuning,
     /// A curve that pierces a sheet or ends on it.
     pub curve_and_sheet: CurveAndSheetTuning,
+    /// A double curve that ends inside a sheet.
+    pub pinch_point: PinchPointTuning,
+    /// Any number of sheets in a curve.
+    pub book: BookTuning,
+    /// A curve that ends where its sheets do.
+    pub book_end: BookEndTuning,
 }
 
 impl ModelTuning {
@@ -31,6 +38,9 @@ impl ModelTuning {
         isolated_crossing: IsolatedCrossingTuning::MEASURED,
         boundary: BoundaryTuning::MEASURED,
         curve_and_sheet: CurveAndSheetTuning::MEASURED,
+        pinch_point: PinchPointTuning::MEASURED,
+        book: BookTuning::MEASURED,
+        book_end: BookEndTuning::MEASURED,
     };
 }
 
@@ -93,6 +103,8 @@ pub struct YJunctionTuning {
     pub support: f64,
     /// A point off the curve tells where the curve is up to this many ep.
     pub witness: f64,
+    /// Patches that meet at a smaller angle (sine) do not locate a curve.
+    pub meet: f64,
 }
 
 impl YJunctionTuning {
@@ -106,6 +118,7 @@ impl YJunctionTuning {
         step: 0.6,
         support: 0.6,
         witness: 3.0,
+        meet: 0.15,
     };
 }
 
@@ -122,6 +135,8 @@ pub struct TriplePointTuning {
     pub reach: f64,
     /// Cells that must hold points, of twelve.
     pub cells: usize,
+    /// Patches that meet at a smaller angle (sine) locate neither curve nor point.
+    pub meet: f64,
 }
 
 impl TriplePointTuning {
@@ -132,6 +147,7 @@ impl TriplePointTuning {
         determinant: 0.15,
         reach: 0.85,
         cells: 8,
+        meet: 0.15,
     };
 }
 

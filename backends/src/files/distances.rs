@@ -4,7 +4,7 @@ use super::error::{FileError, Flaw, Parsed};
 use super::npy;
 use super::npz::Archive;
 use super::whole::{packed_extension, read_bytes};
-use crosscap_core::SparseDistances;
+use crosscap_core::{Row, SparseDistances};
 use std::path::Path;
 
 const EXTENSIONS: &str = ".npy, .npz";
@@ -24,7 +24,7 @@ pub enum Distances {
         values: Vec<f64>,
     },
     /// Some distances; the others are not known.
-    Sparse(SparseDistances<f64>),
+    Sparse(SparseDistances<f64, Row>),
 }
 
 impl Distances {
@@ -284,7 +284,7 @@ fn sparse(bytes: &[u8]) -> Parsed<Distances> {
                 ));
             }
         };
-        pairs.push((a, b, d));
+        pairs.push((Row::from(a), Row::from(b), d));
     }
     SparseDistances::new(count, pairs)
         .map(Distances::Sparse)

@@ -5,7 +5,7 @@
 //! precision, as the format has them, from the middle of the mesh, which the node carries as its
 //! translation.
 
-use super::mesh::Sheet;
+use super::mesh_sheet::Sheet;
 use crate::picture::{CurveKind, curve_color, piece_color};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

@@ -102,9 +102,9 @@ impl Points {
     /// The records of points that are not packed.
     fn records<'a>(&self, bytes: &'a [u8]) -> Parsed<&'a [u8]> {
         let size = self.count.checked_mul(self.record);
-        let there = bytes.get(self.start..).map_or(0, <[u8]>::len);
-        let size = self.checked(bytes, size.filter(|&size| size <= there))?;
-        Ok(&bytes[self.start..self.start + size])
+        let there = bytes.get(self.start..).unwrap_or_default();
+        let size = self.checked(bytes, size.filter(|&size| size <= there.len()))?;
+        Ok(&there[..size])
     }
 
     /// The places of packed points. What comes out is the points that are there: nothing is taken for a promise.
@@ -227,6 +227,13 @@ pub(crate) mod tests {
                 .contains("header promises")
         );
         assert!(parse(b"LAS").is_err() && parse(b"LASF").is_err());
+    }
+
+    #[test]
+    fn no_points_beyond_the_end_of_the_file_are_none() {
+        let mut bytes = file(&[]);
+        bytes[96..100].fill(255);
+        assert!(parse(&bytes).unwrap().numbers.into_f64().is_empty());
     }
 
     /// The same packed.

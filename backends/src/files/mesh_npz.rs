@@ -1,7 +1,8 @@
 //! Meshes in archives of NumPy arrays, `.npz`: the format that keeps everything.
 
 use super::error::{Flaw, Parsed};
-use super::mesh::{Parts, RawCurve, Sheet};
+use super::mesh_parts::{Parts, RawCurve};
+use super::mesh_sheet::Sheet;
 use super::npz::Archive;
 use super::{npy, npz};
 use crosscap_core::CurveEdge;

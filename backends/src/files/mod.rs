@@ -20,12 +20,15 @@ mod any_cloud;
 mod columns;
 mod distances;
 mod error;
+mod frames;
 mod glb;
 mod indices;
 mod las;
 mod mat;
 mod mesh;
 mod mesh_npz;
+mod mesh_parts;
+mod mesh_sheet;
 mod molecule;
 mod npy;
 mod npy_header;
@@ -52,12 +55,12 @@ pub use any_cloud::AnyCloud;
 pub use columns::{ColumnChoice, ColumnName};
 pub use distances::{Distances, distances_of_bytes, read_distances};
 pub use error::{FileError, Place};
+pub use frames::Atom;
 pub use indices::{read_indices, write_indices};
-pub use mesh::{
-    MESH_EXTENSIONS, MESH_READ_EXTENSIONS, MeshExtras, MeshFile, read_mesh, write_mesh,
-};
+pub use mesh::{MESH_EXTENSIONS, MESH_READ_EXTENSIONS, read_mesh, write_mesh};
 pub use mesh_npz::NO_TRIANGLES;
-pub use molecule::{Atom, Molecule, read_molecule};
+pub use mesh_parts::{MeshExtras, MeshFile};
+pub use molecule::{Molecule, read_molecule};
 pub use points::{
     POINT_EXTENSIONS, PointFile, PointOptions, read_point_file, read_points, write_points,
 };

@@ -4,7 +4,8 @@
 //! single line says nothing about curves; they are then deduced from the triangles.
 
 use super::error::{Flaw, Parsed, excerpt};
-use super::mesh::{Parts, Sheet};
+use super::mesh_parts::Parts;
+use super::mesh_sheet::Sheet;
 use super::npy::{Array, Numbers};
 use super::table::{number, text};
 use std::fmt::Write;

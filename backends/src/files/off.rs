@@ -3,7 +3,8 @@
 //! Written in R^3; read with their variants, also in any dimension (`nOFF`), as text.
 
 use super::error::{Flaw, Parsed, excerpt};
-use super::mesh::{Parts, Sheet};
+use super::mesh_parts::Parts;
+use super::mesh_sheet::Sheet;
 use super::npy::{Array, Numbers};
 use super::table::{number, text};
 use std::fmt::Write;

@@ -9,7 +9,8 @@
 
 use super::columns::{ColumnChoice, pick};
 use super::error::{Flaw, Parsed, excerpt};
-use super::mesh::{Parts, Sheet, tells_its_curves};
+use super::mesh_parts::{Parts, tells_its_curves};
+use super::mesh_sheet::Sheet;
 use super::npy::{Array, Numbers};
 use super::ply_reader::{Element, Reader, Rows, Type};
 use crosscap_core::{CurveEdge, PointCloud};

@@ -7,7 +7,7 @@ use super::npy::{Array, Numbers};
 use super::npz::Archive;
 use super::remark::Remark;
 use super::whole::{extension, packed_extension, read_bytes, write_bytes_whole};
-use super::{las, mat, molecule, npy, obj, off, pcd, ply, stl, table, trajectory, vtk, vtk_xml};
+use super::{frames, las, mat, npy, obj, off, pcd, ply, stl, table, trajectory, vtk, vtk_xml};
 use crosscap_core::PointCloud;
 use std::path::Path;
 
@@ -149,8 +149,8 @@ pub(crate) fn parse(extension: &str, bytes: &[u8], options: &PointOptions) -> Pa
         "vtp" => from_places(vtk_xml::parse_points(bytes, "PolyData")?, options),
         "xtc" => from_frames(trajectory::parse_xtc(bytes)?, options),
         "dcd" => from_frames(trajectory::parse_dcd(bytes)?, options),
-        "pdb" => from_frames(molecule::parse_pdb(bytes)?, options),
-        "xyz" if molecule::is_chemical(bytes) => from_frames(molecule::parse_xyz(bytes)?, options),
+        "pdb" => from_frames(frames::parse_pdb(bytes)?, options),
+        "xyz" if frames::is_chemical(bytes) => from_frames(frames::parse_xyz(bytes)?, options),
         _ => from_table(bytes, extension, options),
     }
 }
@@ -167,7 +167,7 @@ fn only_columns(options: &PointOptions, what: &str) -> Parsed<()> {
 }
 
 /// Frames of a molecule: every number is a coordinate.
-fn from_frames(frames: molecule::Coordinates, options: &PointOptions) -> Parsed<PointFile> {
+fn from_frames(frames: frames::Coordinates, options: &PointOptions) -> Parsed<PointFile> {
     only_columns(options, "frames of a molecule")?;
     if matches!(options.columns, ColumnChoice::Chosen(_)) {
         return Err(Flaw::new(

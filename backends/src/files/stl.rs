@@ -4,7 +4,8 @@
 //! vertex.
 
 use super::error::{Flaw, Parsed, excerpt};
-use super::mesh::{Parts, Sheet};
+use super::mesh_parts::Parts;
+use super::mesh_sheet::Sheet;
 use super::table::{number, text};
 use std::collections::BTreeMap;
 

@@ -3,7 +3,7 @@
 use super::mesh::{mesh_bytes, parse as parse_mesh};
 use super::points::{parse as parse_points, points_bytes};
 use super::*;
-use crosscap_core::{Complex, CurveEdge, Mesh, PointCloud};
+use crosscap_core::{Complex, CurveEdge, Mesh, PointCloud, Row};
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 
@@ -272,7 +272,7 @@ proptest! {
         };
         prop_assert_eq!(kept.pairs(), n * (n - 1) / 2);
         for (k, &d) in d.iter().enumerate() {
-            prop_assert_eq!(kept.get((k / n) as u32, (k % n) as u32), Some(d));
+            prop_assert_eq!(kept.get(Row::new(k / n), Row::new(k % n)), Some(d));
         }
     }
 }

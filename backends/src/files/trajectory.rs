@@ -2,7 +2,7 @@
 //! NAMD, X-PLOR). Read only.
 
 use super::error::{Flaw, Parsed};
-use super::molecule::Coordinates;
+use super::frames::Coordinates;
 use molly::{Frame, XTCReader};
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};

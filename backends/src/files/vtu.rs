@@ -5,7 +5,8 @@
 //! text each, with the Betti numbers; and as a whole in `metadata`, a JSON text, byte by byte.
 
 use super::error::{Flaw, Parsed};
-use super::mesh::{Parts, RawCurve, Sheet};
+use super::mesh_parts::{Parts, RawCurve};
+use super::mesh_sheet::Sheet;
 use super::vtk_xml::{File, Source};
 use base64::Engine;
 use crosscap_algorithms::homology::homology;

@@ -1,7 +1,7 @@
 //! Laws of [`LocalChart`].
 
 use super::inputs::{cloud, ranks};
-use super::settings::{Outcome, ensure};
+use super::trial::{Outcome, ensure};
 use super::{Failures, Findings, Law, Settings};
 use crate::{Chart, LocalChart, PointCloud};
 use proptest::collection::vec;

@@ -1,7 +1,7 @@
 //! Laws of [`CompatibilityTest`].
 
 use super::inputs::{LatticePair, area, lattice_pairs};
-use super::settings::ensure;
+use super::trial::ensure;
 use super::{Failures, Findings, Law, Settings};
 use crate::{CompatibilityTest, Meeting};
 use proptest::prelude::*;

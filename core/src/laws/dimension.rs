@@ -3,7 +3,7 @@
 use super::inputs::{FlatSample, flat_samples, ranks};
 use super::motion::{Motion, motions, principal};
 use super::reference::{Scan, StraightLine, rounding, sort};
-use super::settings::{Outcome, ensure};
+use super::trial::{Outcome, ensure};
 use super::{Failures, Findings, Law, Settings};
 use crate::execute::Serial;
 use crate::{

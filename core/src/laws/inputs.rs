@@ -1,6 +1,6 @@
 //! Inputs that laws are tested on, as strategies of proptest.
 
-use crate::{ChartTriangle, PointCloud};
+use crate::{ChartTriangle, Landmark, PointCloud};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::ops::RangeInclusive;
@@ -89,7 +89,7 @@ impl LatticePair {
     /// The triangles in a chart, each place moved by `place`.
     pub fn triangles(&self, place: impl Fn([f64; 2]) -> [f64; 2]) -> [ChartTriangle; 2] {
         [self.a, self.b].map(|t| ChartTriangle {
-            corners: t.map(|[x, y]| (64 * (x + 16) + y + 16) as u32),
+            corners: t.map(|[x, y]| Landmark::new((64 * (x + 16) + y + 16) as usize)),
             places: t.map(|p| place(p.map(f64::from))),
         })
     }

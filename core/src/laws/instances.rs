@@ -222,6 +222,31 @@ pub fn y_junction(draw: &mut Draw) -> Instance {
     half_planes(draw, &[0.0, third + a, 2.0 * third + b])
 }
 
+/// A half plane on a plane, at 60 to 90 degrees.
+pub fn t_junction(draw: &mut Draw) -> Instance {
+    use std::f64::consts::PI;
+    let angle = draw.between(PI / 3.0, 2.0 * PI / 3.0);
+    half_planes(draw, &[0.0, angle, PI])
+}
+
+/// Half planes on a line, any two of them at 40 degrees or more: five, or three or four planes that go through the line. No two
+/// are nearly opposite and not quite: these could as well be one sheet that bends.
+pub fn book(draw: &mut Draw) -> Instance {
+    use std::f64::consts::{PI, TAU};
+    let pages = [5, 6, 8][(draw.between(0.0, 3.0) as usize).min(2)];
+    let turn = TAU / pages as f64;
+    let angles: Vec<f64> = match pages {
+        5 => (0..5)
+            .map(|k| (k as f64 + draw.between(-0.1, 0.1)) * turn)
+            .collect(),
+        _ => (0..pages / 2)
+            .map(|k| k as f64 * turn + draw.between(-0.02, 0.02))
+            .flat_map(|angle| [angle, angle + PI])
+            .collect(),
+    };
+    half_planes(draw, &angles)
+}
+
 /// Three planes that meet in one point, a little off right angles. The strata of the truth are the
 /// twelve quarter planes.
 pub fn triple_point(draw: &mut Draw) -> Instance {
@@ -325,11 +350,12 @@ mod tests {
 
     #[test]
     fn instances_are_what_they_say() {
-        let all: [(Generator, usize, usize); 9] = [
+        let all: [(Generator, usize, usize); 10] = [
             (flat_sheet, 3, 1),
             (two_planes, 3, 4),
             (boundary, 3, 1),
             (y_junction, 3, 3),
+            (t_junction, 3, 3),
             (triple_point, 3, 12),
             (crossing_in_four_dimensions, 4, 2),
             (line_through_plane, 3, 3),

@@ -2,7 +2,7 @@
 
 use super::inputs::{clouds, ranks};
 use super::reference::{Scan, StraightLine};
-use super::settings::ensure;
+use super::trial::ensure;
 use super::{Failures, Findings, Law, Settings};
 use crate::{Error, LandmarkSelector, MetricSpace, PointCloud, Scalar};
 use proptest::prelude::*;

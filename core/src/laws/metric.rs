@@ -2,7 +2,7 @@
 
 use super::inputs::clouds;
 use super::reference::rounding;
-use super::settings::ensure;
+use super::trial::ensure;
 use super::{Failures, Findings, Law, Settings};
 use crate::{MetricSpace, PointCloud, Scalar};
 

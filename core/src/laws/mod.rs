@@ -68,6 +68,7 @@ mod result;
 mod rule;
 mod settings;
 mod singularity;
+mod trial;
 mod triangulation;
 #[cfg(test)]
 mod twins;

@@ -2,7 +2,7 @@
 
 use super::inputs::clouds;
 use super::reference::Scan;
-use super::settings::ensure;
+use super::trial::ensure;
 use super::{Failures, Findings, Law, Settings};
 use crate::{MetricSpace, Neighbor, NeighborhoodOracle, PointCloud, Scalar};
 use proptest::prelude::*;

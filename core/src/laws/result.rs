@@ -2,7 +2,7 @@
 
 use super::inputs::{cloud, ranks};
 use super::motion::{Motion, motions};
-use super::settings::ensure;
+use super::trial::ensure;
 use super::{Failures, Findings, Law, LawBroken, Settings};
 use crate::{Complex, PointCloud};
 use proptest::prelude::*;

@@ -1,6 +1,6 @@
 //! Laws of [`TriangleRule`].
 
-use super::settings::ensure;
+use super::trial::ensure;
 use super::{Failures, Findings, Law, Settings};
 use crate::TriangleRule;
 use proptest::prelude::*;

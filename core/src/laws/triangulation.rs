@@ -1,9 +1,10 @@
 //! Laws of [`Triangulator`].
 
-use super::settings::{Outcome, ensure};
+use super::trial::{Outcome, ensure};
 use super::{Failures, Findings, Law, Settings};
 use crate::{
-    CellNeighborhood, PointCloud, SparseDistances, StratifiedLandmarks, Triangulation, Triangulator,
+    CellNeighborhood, Landmark, PointCloud, SparseDistances, StratifiedLandmarks, Table,
+    Triangulation, Triangulator,
 };
 use proptest::collection::vec;
 use std::f64::consts::PI;
@@ -65,14 +66,16 @@ fn sphere(jitter: &[[f64; 3]]) -> StratifiedLandmarks<f64> {
         moved.map(|x| x / norm)
     });
     let places = PointCloud::new(3, rows.collect()).expect("places on a sphere are finite");
-    let apart = |a: u32, b: u32| {
-        let square = places.squared_distance(a as usize, b as usize);
+    let apart = |a: Landmark, b: Landmark| {
+        let square = places.squared_distance(a.index(), b.index());
         square.sqrt()
     };
-    let neighborhoods: Vec<CellNeighborhood> = (0..count as u32)
+    let neighborhoods: Vec<CellNeighborhood> = (0..count)
         .map(|center| {
-            let near = |&other: &u32| apart(center, other) < 2.7 * spacing;
-            let mut members: Vec<u32> = (0..count as u32).filter(near).collect();
+            let center = Landmark::new(center);
+            let near = |&other: &Landmark| apart(center, other) < 2.7 * spacing;
+            let all = (0..count).map(Landmark::new);
+            let mut members: Vec<Landmark> = all.filter(near).collect();
             members.sort_by(|&a, &b| {
                 let order = apart(center, a).total_cmp(&apart(center, b));
                 order.then(a.cmp(&b))
@@ -81,7 +84,7 @@ fn sphere(jitter: &[[f64; 3]]) -> StratifiedLandmarks<f64> {
         })
         .collect();
     StratifiedLandmarks {
-        strata: vec![2; count],
+        strata: Table::filled(count, 2),
         curve_edges: Vec::new(),
         distances: SparseDistances::within(count, &neighborhoods, apart)
             .expect("members are landmarks"),
@@ -91,7 +94,7 @@ fn sphere(jitter: &[[f64; 3]]) -> StratifiedLandmarks<f64> {
 
 /// The same waist with all distances multiplied by a number.
 fn scaled(waist: &StratifiedLandmarks<f64>, factor: f64) -> StratifiedLandmarks<f64> {
-    let apart = |a: u32, b: u32| factor * waist.distances.get(a, b).unwrap_or(f64::INFINITY);
+    let apart = |a, b| factor * waist.distances.get(a, b).unwrap_or(f64::INFINITY);
     StratifiedLandmarks {
         distances: SparseDistances::within(waist.strata.len(), &waist.neighborhoods, apart)
             .expect("members are landmarks"),
@@ -119,7 +122,7 @@ fn scaled(waist: &StratifiedLandmarks<f64>, factor: f64) -> StratifiedLandmarks<
 ///         Ok(Triangulation {
 ///             complex: Complex::new(count, vec![], waist.curve_edges.clone())?,
 ///             dropped: vec![],
-///             incomplete: (0..count as u32).map(|landmark| Incomplete { landmark }).collect(),
+///             incomplete: waist.strata.ids().map(|landmark| Incomplete { landmark }).collect(),
 ///             counts: Default::default(),
 ///         })
 ///     }
@@ -233,7 +236,7 @@ mod tests {
         fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
             let count = waist.strata.len() as u32;
             let near = &waist.neighborhoods[0].members;
-            let mut corners = [near[0], near[1], near[2]];
+            let mut corners = [near[0], near[1], near[2]].map(u32::from);
             if self.0 == Fault::Far {
                 corners = [0, 1, count - 1];
             }
@@ -241,9 +244,9 @@ mod tests {
             let long = waist.distances.get(near[0], near[1]) >= Some(1.0);
             let none = self.0 == Fault::Length && long;
             let again = self.1.fetch_not(Ordering::Relaxed) && self.0 == Fault::Turns;
-            let open: Vec<u32> = match self.0 {
+            let open: Vec<Landmark> = match self.0 {
                 Fault::Silent => vec![],
-                _ => (u32::from(again)..count).collect(),
+                _ => waist.strata.ids().skip(usize::from(again)).collect(),
             };
             let triangles = if none { vec![] } else { vec![corners] };
             Ok(Triangulation {

@@ -7,7 +7,11 @@ const SOURCES: [&str; 10] = [
     include_str!("metric.rs"),
     include_str!("neighborhood.rs"),
     include_str!("dimension.rs"),
-    include_str!("singularity.rs"),
+    concat!(
+        include_str!("singularity/mod.rs"),
+        "mod tests {",
+        include_str!("singularity/tests.rs")
+    ),
     include_str!("chart.rs"),
     include_str!("landmarks.rs"),
     include_str!("compatibility.rs"),

@@ -45,6 +45,10 @@ pub enum LinkKind {
     Curve,
     /// One point: the end of a curve that no surface touches.
     CurveEnd,
+    /// Two nodes of one degree, five or more, joined by as many arcs: a point of a curve in which so many sheets meet.
+    Book,
+    /// One node of degree five or more with as many leaves: such a curve ends on the boundaries of all its sheets.
+    BookEnd,
     /// Any other connected link.
     Other,
     /// Any other disconnected link.
@@ -53,7 +57,7 @@ pub enum LinkKind {
 
 impl LinkKind {
     /// Kinds that need no declaration beyond the marks of the edges.
-    pub const GENERIC: [Self; 12] = [
+    pub const GENERIC: [Self; 14] = [
         Self::Circle,
         Self::Arc,
         Self::Double,
@@ -66,6 +70,8 @@ impl LinkKind {
         Self::CurveOnSheet,
         Self::Curve,
         Self::CurveEnd,
+        Self::Book,
+        Self::BookEnd,
     ];
 
     /// All kinds that are those of one link.
@@ -88,7 +94,7 @@ impl LinkKind {
         Self::CurveEnd,
     ];
 
-    /// The link of the kind; `None` for [`LinkKind::Other`] and [`LinkKind::Split`].
+    /// The link of the kind; `None` for those that are the kind of several links.
     pub fn link(self) -> Option<Link> {
         let star = |leaves: u8| (1..=leaves).map(|leaf| [0, leaf]).collect::<Vec<_>>();
         let pairs = |nodes: u8, joined: fn(u8, u8) -> bool| {
@@ -115,7 +121,7 @@ impl LinkKind {
             Self::CurveThroughSheet => (2, vec![], 1),
             Self::CurveOnSheet => (1, vec![], 1),
             Self::CurveEnd => (1, vec![], 0),
-            Self::Other | Self::Split => return None,
+            Self::Book | Self::BookEnd | Self::Other | Self::Split => return None,
         };
         Link::new(nodes, &arcs, circles)
     }
@@ -125,12 +131,24 @@ impl LinkKind {
         let link = link.without_creases();
         let same = |kind: &Self| kind.link().as_ref() == Some(&link);
         Self::NAMED.into_iter().find(same).unwrap_or_else(|| {
-            if link.parts().len() + link.circles() == 1 {
-                Self::Other
-            } else {
-                Self::Split
+            match link.parts().len() + link.circles() {
+                1 => Self::of_many(&link),
+                _ => Self::Split,
             }
         })
+    }
+
+    /// The kind of a connected link of no one name.
+    fn of_many(link: &Link) -> Self {
+        let cells = u8::try_from(link.arcs().len()).unwrap_or(u8::MAX);
+        if *link == Link::suspension(cells) {
+            return Self::Book;
+        }
+        let leaves = (0..link.nodes).filter(|&node| link.degree(node) == 1);
+        match leaves.count() == link.arcs().len() && link.nodes() == link.arcs().len() + 1 {
+            true => Self::BookEnd,
+            false => Self::Other,
+        }
     }
 
     /// What the point is, in words; `None` where it has no name.
@@ -152,6 +170,10 @@ impl LinkKind {
             Self::CurveOnSheet => "the end of a curve on a sheet",
             Self::Curve => "a point of a curve without a surface",
             Self::CurveEnd => "the end of a curve without a surface",
+            Self::Book => "a point of a curve in which five or more sheets meet",
+            Self::BookEnd => {
+                "the end of a curve in which five or more sheets meet, on the boundaries of all"
+            }
             Self::Other | Self::Split => return None,
         })
     }

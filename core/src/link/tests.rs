@@ -68,7 +68,18 @@ fn every_named_link_is_told() {
         assert!((0..2).all(|v| link.degree(v) == usize::from(cells)));
     }
     assert_eq!(Link::suspension(2).kind(), LinkKind::Circle);
-    assert_eq!(Link::suspension(5).kind(), LinkKind::Other);
+    for cells in 5..9u8 {
+        assert_eq!(Link::suspension(cells).kind(), LinkKind::Book);
+        let leaves: Vec<[u8; 2]> = (1..=cells).map(|leaf| [0, leaf]).collect();
+        let end = Link::new(1 + cells, &leaves, 0).unwrap();
+        assert_eq!(end.kind(), LinkKind::BookEnd);
+        let loops = Link::new(
+            cells,
+            &[&leaves[..usize::from(cells) - 1], &[[0, 0]]].concat(),
+            0,
+        );
+        assert_eq!(loops.unwrap().kind(), LinkKind::Other);
+    }
     assert_eq!(Link::new(2, &[[0, 2]], 0), None);
     let arcs = vec![[1, 0], [1, 1]];
     let raw = Unchecked {

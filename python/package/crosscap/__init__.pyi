@@ -288,7 +288,7 @@ class SurfaceReconstruction(_Bridges, BaseEstimator):
         surface: bool = False,
         method: str = "cells",
         prepare: bool | None = None,
-        tries: int = 6,
+        tries: int = 7,
         time_limit: float | None = None,
         on_refusal: Literal["raise", "warn", "ignore"] = "raise",
         random_state: Any = 0,

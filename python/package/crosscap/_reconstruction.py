@@ -103,7 +103,7 @@ class SurfaceReconstruction(BaseEstimator):
     prepare : bool, optional
         Whether outliers are left out, and points that scatter moved onto fits of their neighborhoods. When left
         out the program decides, where it chooses lengths. Never with a metric of your own.
-    tries : int, default=6
+    tries : int, default=7
         Attempts at most, where lengths are left to the program: what a failed one showed decides on the next.
     time_limit : float, optional
         No further attempt begins after so many seconds.
@@ -180,7 +180,7 @@ class SurfaceReconstruction(BaseEstimator):
         surface=False,
         method="cells",
         prepare=None,
-        tries=6,
+        tries=7,
         time_limit=None,
         on_refusal="raise",
         random_state=0,

@@ -6,18 +6,20 @@ use super::tiles::{Cut, Shape, TILE};
 use crate::certificate::geometry::corners;
 use std::collections::BTreeSet;
 
-/// Points that are counted around a gap in any case.
-const LEAST_AROUND: f64 = 40.0;
-
 impl Search<'_> {
     /// Area of the part of a triangle that is `inside`.
-    pub(super) fn part(&self, t: u32, spacing: f64, inside: &impl Fn(&[f64]) -> bool) -> f64 {
+    pub(super) fn part(
+        &self,
+        t: u32,
+        spacing: f64,
+        inside: &(impl Fn(&[f64]) -> bool + ?Sized),
+    ) -> f64 {
         let shape = Shape::new(corners(self.mesh, t));
         let mut place = vec![0.0; self.mesh.vertices.dimension()];
-        let mut area = 0.0;
+        let (mut area, finest) = (0.0, self.finest());
         shape.cut(&mut place, &mut |tile, place| {
             let scale = tile.scale();
-            if shape.longest * scale > TILE * spacing {
+            if scale > finest && shape.longest * scale > TILE * spacing {
                 return Cut::Further;
             }
             if inside(place) {
@@ -29,7 +31,7 @@ impl Search<'_> {
     }
 
     /// Triangles connected with `from` over those that are `near`.
-    pub(super) fn grown(&self, from: &[u32], near: impl Fn(u32) -> bool) -> Vec<u32> {
+    pub(super) fn grown(&self, from: &[u32], mut near: impl FnMut(u32) -> bool) -> Vec<u32> {
         let mut seen: BTreeSet<u32> = from.iter().copied().collect();
         let mut all: Vec<u32> = seen.iter().copied().collect();
         let mut k = 0;
@@ -46,7 +48,8 @@ impl Search<'_> {
         all
     }
 
-    /// Area and points of rings about triangles that hold `wanted` points and are of one density, where `counts` holds.
+    /// Area and points of rings about triangles that hold twice as many points as are `wanted`, where `counts` holds, for a density that
+    /// does not vary: rings that are denser by chance would be taken for another density.
     pub(super) fn around(
         &self,
         from: &[u32],
@@ -56,12 +59,6 @@ impl Search<'_> {
         let mut seen: BTreeSet<u32> = from.iter().copied().collect();
         let mut ring: Vec<u32> = seen.iter().copied().collect();
         let mut all = Count::default();
-        // rings that are denser by chance would be taken for another density
-        let (least, wanted) = if self.varies {
-            (LEAST_AROUND, wanted)
-        } else {
-            (f64::INFINITY, 2.0 * wanted)
-        };
         while !ring.is_empty() {
             let mut own = Count::default();
             for &t in &ring {
@@ -70,7 +67,7 @@ impl Search<'_> {
                 own.points += f64::from(self.ground.counts[t as usize]);
                 own.ground += self.part(t, 1.0 / density.sqrt(), &counts);
             }
-            if !all.take(own, least, wanted) || all.points >= wanted {
+            if !all.take(own, f64::INFINITY, 2.0 * wanted) || all.points >= 2.0 * wanted {
                 break;
             }
             let mut next = Vec::new();

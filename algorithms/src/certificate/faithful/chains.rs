@@ -1,9 +1,10 @@
 //! Chains of places far from the points: slits and cuts.
 
-use super::chance::{self, LEVELS};
+use super::chance::{self, LEVELS, Level};
 use super::discs::{Empty, Gap};
-use super::ground::{COUNTED, Count};
+use super::ground::COUNTED;
 use super::search::Search;
+use super::slope::{Expected, Hole};
 use super::tiles::{Shape, TILE};
 use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
@@ -12,9 +13,6 @@ use crate::certificate::geometry::corners;
 const MEASURED: usize = 12;
 /// Tiles hang together when their middles are this near, in spacings.
 const TOGETHER: f64 = 1.1 * TILE;
-/// The same for a chain, which is long and thin and takes little from the counts around it.
-const ALONG: f64 = 1.1;
-
 impl Search<'_> {
     /// The chains of tiles of every level, as gaps.
     pub(super) fn chains(&self, tiles: &[Empty], middles: &[f64], gaps: &mut Vec<Gap>) {
@@ -50,17 +48,23 @@ impl Search<'_> {
                 }
             }
             for chain in &members {
-                let (mut gap, counted) = self.measured(chain, tiles, middles);
+                let (mut gap, counted, nearer) = self.measured(chain, tiles, middles);
                 let random = (level.radius / radius).powi(2);
                 let measure = chance::known(gap.expected * random, counted);
-                gap.p = level.chain(self.points() as f64, measure);
+                let points = self.points() as f64;
+                gap.p = if self.varies {
+                    Level::at(nearer * level.radius).chain(points, measure)
+                } else {
+                    level.chain(points, measure)
+                };
                 gaps.push(gap);
             }
         }
     }
 
-    /// A chain as a gap, and the number of points around that its density is counted from. Its probability is left to the caller.
-    fn measured(&self, chain: &[u32], tiles: &[Empty], middles: &[f64]) -> (Gap, f64) {
+    /// A chain as a gap, the number of points around that its density is counted from, and how many times nearer to each other they are than
+    /// those that its tiles were found by. Its probability is left to the caller.
+    fn measured(&self, chain: &[u32], tiles: &[Empty], middles: &[f64]) -> (Gap, f64, f64) {
         let width = self.mesh.vertices.dimension();
         let at = |k: u32| &middles[k as usize * width..(k as usize + 1) * width];
         let widest = chain.iter().copied().fold(chain[0], |best, k| {
@@ -72,43 +76,35 @@ impl Search<'_> {
         });
         let triangle = tiles[widest as usize].triangle;
         let places = chain.iter().flat_map(|&k| at(k).iter().copied()).collect();
-        let (empty, around) = self.emptied(
-            chain,
-            tiles,
-            places,
-            1.0 / self.middle_density(triangle).sqrt(),
-        );
+        let spacing = 1.0 / self.middle_density(triangle).sqrt();
+        let found = self.emptied(chain, tiles, places, triangle, spacing);
         let own = chain
             .iter()
             .map(|&k| self.middle_density(tiles[k as usize].triangle))
             .sum::<f64>()
             / chain.len() as f64;
-        let most = if self.varies {
-            ALONG * own
-        } else {
-            f64::INFINITY
-        };
-        let (density, counted) = (around.density().min(most), around.points);
+        let density = found.density;
         let (away, end) = self.distances(at(widest));
         let gap = Gap {
             width: 2.0 * away.min(end) * density.sqrt(),
             size: 2.0 * away.min(end),
-            expected: empty * density,
+            expected: found.points,
             p: 1.0,
             triangle,
             place: at(widest).to_vec(),
         };
-        (gap, counted)
+        (gap, found.counted, (density / own).sqrt())
     }
 
-    /// Area of the empty discs about the tiles of a chain, whose middles are `places`, and what is around them.
+    /// What is expected in the empty discs about the tiles of a chain, whose middles are `places`, the widest in `triangle`.
     fn emptied(
         &self,
         chain: &[u32],
         tiles: &[Empty],
         places: Vec<f64>,
+        triangle: u32,
         spacing: f64,
-    ) -> (f64, Count) {
+    ) -> Expected {
         let width = self.mesh.vertices.dimension();
         let tree = BallTree::new(width, &places);
         let mut triangles: Vec<u32> = chain.iter().map(|&k| tiles[k as usize].triangle).collect();
@@ -125,6 +121,19 @@ impl Search<'_> {
                 square < discs[k as usize] * discs[k as usize]
             })
         };
+        if self.varies {
+            triangles.insert(0, triangle);
+            let hole = Hole {
+                tree: &tree,
+                triangles: &triangles,
+                reach,
+                spacing,
+                inside: &inside,
+            };
+            return self
+                .expected_in(&hole)
+                .unwrap_or(Expected::nothing(spacing));
+        }
         let near = |t: u32| {
             let shape = Shape::new(corners(self.mesh, t));
             let mut place = vec![0.0; width];
@@ -135,7 +144,11 @@ impl Search<'_> {
         let empty: f64 = region.iter().map(|&t| self.part(t, spacing, &inside)).sum();
         let expected = empty / (spacing * spacing);
         let around = self.around(&triangles, COUNTED.max(2.0 * expected), |p| !inside(p));
-        (empty, around)
+        Expected {
+            points: empty * around.density(),
+            density: around.density(),
+            counted: around.points,
+        }
     }
 
     /// Density of the points at the middle of a triangle.

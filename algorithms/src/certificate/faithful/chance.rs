@@ -39,6 +39,25 @@ pub(super) const LEVELS: [Level; 7] = [
 ];
 
 impl Level {
+    /// The level of a radius between those of the table; the last one for all above, and a level where nothing is unlikely for those
+    /// below.
+    pub fn at(radius: f64) -> Self {
+        let next = LEVELS.partition_point(|l| l.radius < radius);
+        let last = LEVELS.len() - 1;
+        let (low, high) = match next {
+            0 => return level(radius, 0.0, 0.0),
+            next if next > last => return Self { ..LEVELS[last] },
+            next => (&LEVELS[next - 1], &LEVELS[next]),
+        };
+        let share = (radius - low.radius) / (high.radius - low.radius);
+        let between = |a: f64, b: f64| a + share * (b - a);
+        level(
+            radius,
+            between(low.start, high.start),
+            between(low.rate, high.rate),
+        )
+    }
+
     /// Probability that one of the chains of `points` points is as large as `measure`, at most; all levels, and
     /// discs beside chains, are counted as tried.
     pub fn chain(&self, points: f64, measure: f64) -> f64 {
@@ -77,10 +96,22 @@ mod tests {
     }
 
     #[test]
+    fn levels_beyond_the_table() {
+        assert_eq!(Level::at(0.7).chain(1e4, 1e6), 1.0);
+        let last = &LEVELS[LEVELS.len() - 1];
+        let beyond = Level::at(3.0).chain(1e4, 30.0);
+        assert_eq!(beyond, last.chain(1e4, 30.0));
+        assert_eq!(Level::at(1.0).chain(1e4, 30.0), LEVELS[2].chain(1e4, 30.0));
+    }
+
+    #[test]
     fn wider_chains_are_rarer() {
         for pair in LEVELS.windows(2) {
             assert!(pair[0].radius < pair[1].radius);
             assert!(pair[0].chain(1e4, 40.0) >= pair[1].chain(1e4, 40.0));
+            let between = Level::at(0.5 * (pair[0].radius + pair[1].radius));
+            assert!(pair[0].chain(1e4, 40.0) >= between.chain(1e4, 40.0));
+            assert!(between.chain(1e4, 40.0) >= pair[1].chain(1e4, 40.0));
         }
     }
 }

@@ -3,7 +3,9 @@
 use super::chance::{self, LEVELS};
 use super::ground::COUNTED;
 use super::search::Search;
+use super::slope::{Expected, Hole};
 use super::tiles::{Cut, Shape, TILE};
+use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
 use crosscap_core::squared_distance;
 use serde::Serialize;
@@ -17,10 +19,6 @@ const WIDE_LEVEL: f64 = 1.0;
 /// The same where their density varies, and for even points, where small differences in density make all triangles of
 /// a region gaps.
 const CLEAR_LEVEL: f64 = 1.3;
-/// Where the density varies, the most that the density around a hole may be above that of its own places, which the empty region itself
-/// makes seem thinner: more than that is a density that varies.
-const AROUND: f64 = 1.4;
-
 /// An empty region of the points that the mesh covers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
@@ -65,6 +63,7 @@ impl Search<'_> {
     /// Tiles further from the points than the least level asks, with their middles one after the other.
     pub(super) fn far_tiles(&self) -> (Vec<Empty>, Vec<f64>) {
         let least = self.even.radius(self.least_level());
+        let finest = self.finest();
         let mut place = vec![0.0; self.mesh.vertices.dimension()];
         let (mut tiles, mut middles) = (Vec::new(), Vec::new());
         for (t, &corner) in self.mesh.complex.triangles.iter().enumerate() {
@@ -82,7 +81,7 @@ impl Search<'_> {
                     return Cut::Leave;
                 }
                 let density = self.ground.density_at(corner, weights);
-                if shape.longest * scale * density.sqrt() > TILE {
+                if scale > finest && shape.longest * scale * density.sqrt() > TILE {
                     return Cut::Further;
                 }
                 if away * density.sqrt() >= least {
@@ -110,29 +109,50 @@ impl Search<'_> {
         let place = &middles[k * width..(k + 1) * width];
         let (away, end) = self.distances(place);
         let away = away.min(end);
-        // the density around, without the disc itself
-        let around = self.around(&[tile.triangle], COUNTED, |p| {
-            squared_distance(p, place) > away * away
-        });
-        let own = (tile.away / away).powi(2);
-        let most = if self.varies {
-            AROUND * own
-        } else {
-            f64::INFINITY
-        };
-        let (density, counted) = (around.density().min(most), around.points);
-        let expected = PI * away * away * density;
+        let inside = |p: &[f64]| squared_distance(p, place) < away * away;
+        let found = self.expected_about(tile.triangle, place, away, away / tile.away, &inside);
         let p = chance::disc(
             self.points() as f64,
-            chance::known(self.even.random(expected), counted),
+            chance::known(self.even.random(found.points), found.counted),
         );
         Some(Gap {
-            width: 2.0 * away * density.sqrt(),
+            width: 2.0 * away * found.density.sqrt(),
             size: 2.0 * away,
-            expected,
+            expected: found.points,
             p,
             triangle: tile.triangle,
             place: place.to_vec(),
         })
+    }
+
+    /// What is expected in the disc of radius `away` about a place.
+    fn expected_about(
+        &self,
+        triangle: u32,
+        place: &[f64],
+        away: f64,
+        spacing: f64,
+        inside: &dyn Fn(&[f64]) -> bool,
+    ) -> Expected {
+        if self.varies {
+            let hole = Hole {
+                tree: &BallTree::new(place.len(), place),
+                triangles: &[triangle],
+                reach: away,
+                spacing,
+                inside,
+            };
+            return self
+                .expected_in(&hole)
+                .unwrap_or(Expected::nothing(spacing));
+        }
+        // the density around, without the disc itself
+        let around = self.around(&[triangle], COUNTED, |p| !inside(p));
+        let density = around.density();
+        Expected {
+            points: PI * away * away * density,
+            density,
+            counted: around.points,
+        }
     }
 }

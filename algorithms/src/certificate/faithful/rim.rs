@@ -7,7 +7,9 @@ use super::chance;
 use super::discs::Gap;
 use super::ground::COUNTED;
 use super::search::{CHORD, Search};
+use super::slope::{Expected, Hole};
 use super::tiles::Shape;
+use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
 use crosscap_core::squared_distance;
 
@@ -75,6 +77,37 @@ impl Search<'_> {
     fn empty_about(&self, end: &End, length: f64) -> Gap {
         let square = end.away * end.away;
         let inside = |p: &[f64]| squared_distance(p, &end.place) < square;
+        let fine = end.away / end.spacings;
+        let found = if self.varies {
+            let hole = Hole {
+                tree: &BallTree::new(end.place.len(), &end.place),
+                triangles: &[end.triangle],
+                reach: end.away,
+                spacing: fine,
+                inside: &inside,
+            };
+            self.expected_in(&hole).unwrap_or(Expected::nothing(fine))
+        } else {
+            self.empty_of_one_density(end, fine, &inside)
+        };
+        let measure = chance::known(self.even.random(found.points), found.counted);
+        Gap {
+            width: 2.0 * end.away * found.density.sqrt(),
+            size: 2.0 * end.away,
+            expected: found.points,
+            p: chance::disc(length.max(1.0), measure),
+            triangle: end.triangle,
+            place: end.place.clone(),
+        }
+    }
+
+    /// What is expected in the empty part of the mesh about an end where the density does not vary.
+    fn empty_of_one_density(
+        &self,
+        end: &End,
+        fine: f64,
+        inside: &dyn Fn(&[f64]) -> bool,
+    ) -> Expected {
         let width = self.mesh.vertices.dimension();
         let near = |t: u32| {
             let shape = Shape::new(corners(self.mesh, t));
@@ -82,25 +115,13 @@ impl Search<'_> {
             shape.place([1.0 / 3.0; 3], &mut middle);
             squared_distance(&middle, &end.place).sqrt() < end.away + shape.radius
         };
-        let fine = end.away / end.spacings;
         let region = self.grown(&[end.triangle], near);
-        let empty: f64 = region.iter().map(|&t| self.part(t, fine, &inside)).sum();
+        let empty: f64 = region.iter().map(|&t| self.part(t, fine, inside)).sum();
         let around = self.around(&[end.triangle], COUNTED, |p| !inside(p));
-        let most = if self.varies {
-            1.0 / (fine * fine)
-        } else {
-            f64::INFINITY
-        };
-        let density = around.density().min(most);
-        let expected = empty * density;
-        let measure = chance::known(self.even.random(expected), around.points);
-        Gap {
-            width: 2.0 * end.away * density.sqrt(),
-            size: 2.0 * end.away,
-            expected,
-            p: chance::disc(length.max(1.0), measure),
-            triangle: end.triangle,
-            place: end.place.clone(),
+        Expected {
+            points: empty * around.density(),
+            density: around.density(),
+            counted: around.points,
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::evenness::{Evenness, NEIGHBOR};
 use super::footprints::Footprints;
 use super::ground::Ground;
+use super::standing::Standing;
 use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
 use crate::certificate::incidence::Incidence;
@@ -22,12 +23,18 @@ pub(super) const CHORD: f64 = 0.15;
 /// among dense ones is no gap.
 const VARIES: f64 = 1.5;
 
+/// Tiles of one triangle for each point of the whole sample, about: at the density that the points have a triangle that holds all of them needs fewer. One that would need
+/// more is nearly empty, or without area, and larger tiles show that as well.
+const TILES: f64 = 16.0;
+
 /// What gaps are looked for in.
 pub(in crate::certificate) struct Search<'a> {
     pub mesh: &'a Mesh,
     pub incidence: &'a Incidence,
     pub feet: &'a Footprints,
     pub ground: &'a Ground,
+    /// Which points are on which triangle.
+    pub(super) standing: Standing,
     tree: BallTree,
     rim: Option<BallTree>,
     /// What is taken off a distance to the end of the mesh.
@@ -37,7 +44,7 @@ pub(in crate::certificate) struct Search<'a> {
     /// Largest empty disc that chance leaves, as a radius in spacings.
     largest: f64,
     /// Spacing of all points beside that of those that are looked at.
-    finer: f64,
+    pub(super) finer: f64,
 }
 
 impl<'a> Search<'a> {
@@ -60,6 +67,7 @@ impl<'a> Search<'a> {
             incidence,
             feet,
             ground,
+            standing: Standing::new(count, feet),
             tree: BallTree::new(width, &on_triangles),
             rim: (!places.is_empty()).then(|| BallTree::new(width, &places)),
             chord,
@@ -131,6 +139,11 @@ impl<'a> Search<'a> {
     /// Number of points that stand on triangles.
     pub(super) fn points(&self) -> usize {
         self.tree.order().len()
+    }
+
+    /// The side of the smallest tile of a triangle, as a share of the triangle's.
+    pub(super) fn finest(&self) -> f64 {
+        (TILES * self.points() as f64).sqrt().recip()
     }
 
     /// Distance from a place to the nearest point, and to the end of the mesh.

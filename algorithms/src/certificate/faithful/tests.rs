@@ -15,12 +15,17 @@ const SPACING: f64 = 0.044_721_359_549_995_8;
 
 /// The plate in squares cut in two, without those whose middle is `open`.
 fn plate(open: impl Fn(f64, f64) -> bool) -> Mesh {
-    let side = |k: usize| 2.0 * k as f64 / SQUARES as f64 - 1.0;
-    let at = |i: usize, j: usize| (i * (SQUARES + 1) + j) as u32;
+    plate_of(SQUARES, open)
+}
+
+/// The same, so many squares along a side.
+fn plate_of(squares: usize, open: impl Fn(f64, f64) -> bool) -> Mesh {
+    let side = |k: usize| 2.0 * k as f64 / squares as f64 - 1.0;
+    let at = |i: usize, j: usize| (i * (squares + 1) + j) as u32;
     let mut faces = Vec::new();
-    for i in 0..SQUARES {
-        for j in 0..SQUARES {
-            let half = 1.0 / SQUARES as f64;
+    for i in 0..squares {
+        for j in 0..squares {
+            let half = 1.0 / squares as f64;
             if !open(side(i) + half, side(j) + half) {
                 let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
                 faces.extend([[a, b, c], [a, c, d]]);
@@ -47,7 +52,7 @@ fn plate(open: impl Fn(f64, f64) -> bool) -> Mesh {
         .keys()
         .flat_map(|&v| {
             let v = v as usize;
-            [side(v / (SQUARES + 1)), side(v % (SQUARES + 1)), 0.0]
+            [side(v / (squares + 1)), side(v % (squares + 1)), 0.0]
         })
         .collect();
     let complex = Complex::new(name.len(), triangles, curves).unwrap();
@@ -166,6 +171,18 @@ fn chance_is_no_gap() {
 }
 
 /// On a grid a hole is seen that chance would leave in a random sample.
+/// In the units of a few points that are close together a mesh can be without measure: it is told so before the end of days.
+#[test]
+fn a_mesh_much_larger_than_its_points() {
+    let mut mesh = plate(|_, _| false);
+    let stretched = mesh.vertices.coordinates().iter().map(|x| 1e9 * x);
+    mesh.vertices = PointCloud::new(3, stretched.collect()).unwrap();
+    let points = (0..90).map(|k| f64::from(k * k % 37) * 1e-3).collect();
+    let points = PointCloud::new(3, points).unwrap();
+    let faults: Vec<_> = judged(&mesh, &points).violations().cloned().collect();
+    assert!(!faults.is_empty(), "far from its points");
+}
+
 #[test]
 fn even_points_show_smaller_holes() {
     let (mesh, cell) = (plate(|_, _| false), 1.0 / 22.0);
@@ -204,6 +221,20 @@ fn merged_plates() {
     assert_eq!(kinds, [ViolationKind::MergedSheets], "{wrong}");
     let right = judged(&mesh, &lifted(&between));
     assert!(right.verdict().is_verified(), "{right}");
+}
+
+/// A boundary of four edges is allowed where the points leave what is in it empty, and only there.
+#[test]
+fn a_hole_of_few_edges() {
+    let inside = |x: f64, y: f64| (0.0..0.25).contains(&x) && (0.0..0.25).contains(&y);
+    let mesh = plate_of(8, inside);
+    let around = sample(13, POINTS, |x, y| if inside(x, y) { 0.0 } else { 1.0 });
+    let right = judged(&mesh, &around);
+    assert_eq!(right.edges.as_ref().unwrap().boundaries, [4, 32]);
+    assert!(right.verdict().is_verified(), "{right}");
+    let wrong = judged(&mesh, &sample(13, POINTS, |_, _| 1.0));
+    let mut kinds = wrong.violations().map(|v| v.kind);
+    assert!(kinds.any(|k| k == ViolationKind::SmallHole), "{wrong}");
 }
 
 /// A vertex is told when it is off the points around it, not when these scatter as much.

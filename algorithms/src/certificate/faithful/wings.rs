@@ -1,6 +1,6 @@
 //! The sheets about a vertex, each with its points.
 
-use super::footprints::Footprints;
+use super::standing::Standing;
 use crate::certificate::incidence::Incidence;
 use crosscap_core::Mesh;
 
@@ -17,15 +17,13 @@ pub(super) struct Wings<'a> {
     incidence: &'a Incidence,
     /// For every side of a triangle (opposite corner k) the triangle beyond, where that is one sheet.
     beyond: Vec<[u32; 3]>,
-    starts: Vec<u32>,
-    /// Which footprints are on which triangle.
-    feet: Vec<u32>,
+    standing: &'a Standing,
     seen: Vec<u32>,
     round: u32,
 }
 
 impl<'a> Wings<'a> {
-    pub fn new(mesh: &'a Mesh, incidence: &'a Incidence, feet: &Footprints) -> Self {
+    pub fn new(mesh: &'a Mesh, incidence: &'a Incidence, standing: &'a Standing) -> Self {
         let count = mesh.complex.triangles.len();
         let mut beyond = vec![[NONE; 3]; count];
         for (e, ends) in incidence.edges.iter().enumerate() {
@@ -40,26 +38,11 @@ impl<'a> Wings<'a> {
                 }
             }
         }
-        let mut starts = vec![0_u32; count + 1];
-        let on = |item: u32| (item as usize) < count;
-        for &item in feet.items.iter().filter(|&&i| on(i)) {
-            starts[item as usize + 1] += 1;
-        }
-        for t in 0..count {
-            starts[t + 1] += starts[t];
-        }
-        let mut fill = starts.clone();
-        let mut order = vec![0; starts[count] as usize];
-        for (k, &item) in feet.items.iter().enumerate().filter(|i| on(*i.1)) {
-            order[fill[item as usize] as usize] = k as u32;
-            fill[item as usize] += 1;
-        }
         Self {
             mesh,
             incidence,
             beyond,
-            starts,
-            feet: order,
+            standing,
             seen: vec![0; count],
             round: 0,
         }
@@ -94,9 +77,7 @@ impl<'a> Wings<'a> {
             points.clear();
             for _ in 0..LAYERS {
                 for &t in &layer {
-                    let t = t as usize;
-                    let range = self.starts[t] as usize..self.starts[t + 1] as usize;
-                    points.extend_from_slice(&self.feet[range]);
+                    points.extend_from_slice(self.standing.on(t));
                 }
                 if points.len() >= ENOUGH || layer.is_empty() {
                     break;

@@ -4,7 +4,7 @@ use super::fitter::{Fitter, Scratch, View};
 use crate::audit;
 use crate::stratify::curve_ends::{EndRegion, Settled};
 use crate::stratify::site::{FitUsed, On, StratumKind};
-use crosscap_core::{Decomposition, Located, Rejection, Scalar};
+use crosscap_core::{Decomposition, Label, Located, Neighbor, Rejection, Row, Scalar};
 
 /// A fit about an end.
 struct Shown {
@@ -19,7 +19,7 @@ struct Shown {
 /// A ball in which a model is asked.
 #[derive(Clone, Copy)]
 struct Ball {
-    center: usize,
+    center: Row,
     radius: f64,
 }
 
@@ -30,7 +30,7 @@ impl<S: Scalar> Fitter<'_, S> {
     pub(in crate::stratify) fn about_end(
         &self,
         model: usize,
-        row: usize,
+        row: Row,
         radius: f64,
         eps: f64,
         scratch: &mut Scratch<S>,
@@ -44,7 +44,7 @@ impl<S: Scalar> Fitter<'_, S> {
             if ball.radius > tuning.widest * eps {
                 return None;
             }
-            let shown = match self.shown(model, ball, scratch)? {
+            let shown = match self.shown(model, ball, tuning.overlap * eps, scratch)? {
                 Ok(shown) => shown,
                 Err(Rejection::NeighborhoodTooSmall { needed }) => {
                     ball.radius = tuning.spare * needed;
@@ -52,8 +52,8 @@ impl<S: Scalar> Fitter<'_, S> {
                 }
                 Err(_) => return None,
             };
-            let far = |row: usize| self.far(row, &shown.place);
-            let rows = scratch.near.iter().map(|x| x.index);
+            let far = |row: Row| self.far(row, &shown.place);
+            let rows = scratch.near.iter().map(Neighbor::row);
             let nearest = rows.min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)))?;
             let shift = far(ball.center);
             if shift > tuning.off_center * ball.radius && nearest != ball.center {
@@ -64,20 +64,23 @@ impl<S: Scalar> Fitter<'_, S> {
                 model: model as u8,
                 radius: eps,
             };
-            return self.region(shown, ball.radius - shift, used, scratch);
+            let reach = ball.radius - shift;
+            return self.region(shown, [reach, reach + tuning.overlap * eps], used, scratch);
         }
         None
     }
 
-    /// What a model shows in a ball, or why it does not; `None` for a ball that it cannot be asked about.
+    /// What a model shows in a ball, or why it does not; `None` for a ball that it cannot be asked about. Rows up to `margin`
+    /// beyond the ball are labelled.
     fn shown(
         &self,
         model: usize,
         ball: Ball,
+        margin: f64,
         scratch: &mut Scratch<S>,
     ) -> Option<Result<Shown, Rejection>> {
         let engine = self.models[model].as_ref();
-        let view = self.view(ball.center, ball.radius, ball.radius, scratch)?;
+        let view = self.view(ball.center, ball.radius, ball.radius + margin, scratch)?;
         if view.frame.spreads_beyond(engine.local_dimension()) {
             return None;
         }
@@ -87,10 +90,11 @@ impl<S: Scalar> Fitter<'_, S> {
             Ok(found) => found,
             Err(rejection) => return Some(Err(rejection)),
         };
-        let fit = audit::sound(Ok(fit), &local, engine, ball.center, &self.faults)?;
-        let located = audit::placed(located, &all, &local, engine, ball.center, &self.faults);
-        let point = fit.points.first()?;
-        let place = self.moved(ball.center, &view, local.point(view.center), point);
+        let point = ball.center.index();
+        let fit = audit::sound(Ok(fit), &local, engine, point, &self.faults)?;
+        let located = audit::placed(located, &all, &local, engine, point, &self.faults);
+        let to = fit.points.first()?;
+        let place = self.moved(ball.center, &view, local.point(view.center), to);
         Some(Ok(Shown {
             fit,
             located,
@@ -99,11 +103,12 @@ impl<S: Scalar> Fitter<'_, S> {
         }))
     }
 
-    /// The rows nearer than `reach` to the point that a fit shows, with what it says of them.
+    /// The rows nearer than `reach` to the point that a fit shows, with what it says of them, and labels of those that
+    /// are nearer than `known`.
     fn region(
         &self,
         shown: Shown,
-        reach: f64,
+        [reach, known]: [f64; 2],
         used: FitUsed,
         scratch: &mut Scratch<S>,
     ) -> Option<(EndRegion, Vec<Settled>)> {
@@ -113,39 +118,40 @@ impl<S: Scalar> Fitter<'_, S> {
             view,
             place,
         } = shown;
-        let rows: Vec<usize> = scratch.near.iter().map(|x| x.index).collect();
+        let rows: Vec<Row> = scratch.near.iter().map(Neighbor::row).collect();
         let engine = self.models[usize::from(used.model)].as_ref();
         let local = self.local(&view, engine, scratch);
         let labels = std::mem::take(&mut fit.labels);
-        let mut own: Vec<(u32, u8, Settled)> = Vec::new();
+        let mut own: Vec<(Row, Label, Settled)> = Vec::new();
+        let mut beyond: Vec<(Row, Label)> = Vec::new();
         for (k, located) in located.into_iter().enumerate() {
             let row = rows[k];
-            if self.far(row, &place) < reach {
+            let far = self.far(row, &place);
+            if far >= reach && far < known {
+                beyond.push((row, labels[k]));
+            }
+            if far < reach {
                 let located = located?;
                 let to = self.moved(row, &view, local.point(k), &located.place);
-                own.push((row as u32, labels[k], settled(row, located, to, used)));
+                own.push((row, labels[k], settled(row, located, to, used)));
             }
         }
         own.sort_by_key(|x| x.0);
-        let region = EndRegion {
-            labels: own.iter().map(|x| (x.0, x.1)).collect(),
-            fit,
-            place: place.into(),
-            reach,
-        };
+        let labels = own.iter().map(|x| (x.0, x.1)).collect();
+        let region = EndRegion::new([labels, beyond], fit, place.into(), reach);
         Some((region, own.into_iter().map(|x| x.2).collect()))
     }
 
     /// How far a row is from a place.
-    fn far(&self, row: usize, place: &[f64]) -> f64 {
-        let own = self.cloud.point(row).iter().map(|x| x.as_f64());
+    fn far(&self, row: Row, place: &[f64]) -> f64 {
+        let own = self.cloud.point(row.index()).iter().map(|x| x.as_f64());
         let squares = own.zip(place).map(|(x, p)| (x - p) * (x - p));
         squares.sum::<f64>().sqrt()
     }
 }
 
 /// What becomes of a row that a fit has located.
-fn settled(row: usize, located: Located, place: Box<[f64]>, used: FitUsed) -> Settled {
+fn settled(row: Row, located: Located, place: Box<[f64]>, used: FitUsed) -> Settled {
     let kind = match (located.dimension, located.cells) {
         (0, _) => StratumKind::Point,
         (_, 1) => StratumKind::Boundary,

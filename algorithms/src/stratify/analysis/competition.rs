@@ -2,7 +2,7 @@
 
 use super::fitter::{Fitter, Scratch, View};
 use crate::audit;
-use crosscap_core::{Decomposition, Located, Scalar, SingularityModel};
+use crosscap_core::{Decomposition, Located, Row, Scalar, SingularityModel};
 
 /// A fit that holds its own.
 pub(super) struct Contender {
@@ -29,7 +29,7 @@ impl<S: Scalar> Fitter<'_, S> {
     /// The winner will be asked about the `added` rows behind those of the ball.
     pub(super) fn compete(
         &self,
-        i: usize,
+        i: Row,
         view: &View,
         added: usize,
         rules: &Rules<'_>,
@@ -70,7 +70,7 @@ impl<S: Scalar> Fitter<'_, S> {
     /// The fit of one model, if it has one that can be used.
     fn ask(
         &self,
-        i: usize,
+        i: Row,
         view: &View,
         added: usize,
         m: usize,
@@ -94,7 +94,7 @@ impl<S: Scalar> Fitter<'_, S> {
                 return None;
             }
         };
-        let Some(fit) = audit::sound(Ok(fit), &local, model, i, &self.faults) else {
+        let Some(fit) = audit::sound(Ok(fit), &local, model, i.index(), &self.faults) else {
             self.ledger.broken(m);
             return None;
         };
@@ -109,7 +109,7 @@ impl<S: Scalar> Fitter<'_, S> {
     /// What the winner says of the `added` rows behind those of the ball.
     pub(super) fn locate(
         &self,
-        i: usize,
+        i: Row,
         view: &View,
         added: usize,
         winner: &mut Contender,
@@ -126,7 +126,7 @@ impl<S: Scalar> Fitter<'_, S> {
             Ok((_, located)) => located,
             Err(_) => vec![None; added],
         });
-        audit::placed(located, &about, &local, model, i, &self.faults)
+        audit::placed(located, &about, &local, model, i.index(), &self.faults)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::fitter::{Fitter, View};
 use crate::audit;
 use crate::principal::PrincipalFrame;
-use crosscap_core::{BallDimension, Balls, Error, Neighbor, Neighborhood, Radii, Scalar};
+use crosscap_core::{BallDimension, Balls, Error, Neighbor, Neighborhood, Radii, Row, Scalar};
 
 impl<S: Scalar> Fitter<'_, S> {
     /// Number of points and dimension of the balls of the analysis, one a point, as the estimator tells them for all
@@ -30,29 +30,29 @@ impl<S: Scalar> Fitter<'_, S> {
     }
 
     /// What the estimator says of the points `near` around `i`.
-    fn estimate(&self, i: usize, radius: f64, near: &[Neighbor<S>]) -> Result<usize, Error> {
+    fn estimate(&self, i: Row, radius: f64, near: &[Neighbor<S>]) -> Result<usize, Error> {
         let estimator = self.estimator;
         let estimate = estimator.estimate(&Neighborhood {
-            center: i,
+            center: i.index(),
             radius,
             neighbors: near,
             metric: self.space.metric(),
             cloud: Some(self.cloud),
         })?;
         let space = self.cloud.dimension();
-        audit::dimension(estimator.name(), i, &estimate, near.len(), space)
+        audit::dimension(estimator.name(), i.index(), &estimate, near.len(), space)
     }
 
     /// The dimension of a ball that is smaller than that of the analysis, by the same estimator; `None` where it
     /// has too few points for an answer.
-    pub(super) fn dimension_of(&self, i: usize, view: &View) -> Option<usize> {
+    pub(super) fn dimension_of(&self, i: Row, view: &View) -> Option<usize> {
         self.dimension_by(i, view.radius, &view.frame, view.fitted)
     }
 
     /// The same for the inner part of a ball, of which `near` has the points that are fitted.
     pub(super) fn inner_dimension(
         &self,
-        i: usize,
+        i: Row,
         radius: f64,
         near: &[Neighbor<S>],
     ) -> Option<usize> {
@@ -64,7 +64,7 @@ impl<S: Scalar> Fitter<'_, S> {
 
     fn dimension_by(
         &self,
-        i: usize,
+        i: Row,
         radius: f64,
         frame: &PrincipalFrame,
         points: usize,
@@ -77,11 +77,13 @@ impl<S: Scalar> Fitter<'_, S> {
             return None;
         }
         let mut near = Vec::new();
-        self.space.oracle().within(i, S::of(radius), &mut near);
+        self.space
+            .oracle()
+            .within(i.index(), S::of(radius), &mut near);
         match self.estimate(i, radius, &near) {
             Ok(dimension) => Some(dimension),
             Err(fault @ Error::Law { .. }) => {
-                self.faults.add(i, fault);
+                self.faults.add(i.index(), fault);
                 None
             }
             Err(_) => None,

@@ -2,10 +2,10 @@
 
 use super::competition::{Contender, Rules};
 use super::fitter::{Fitter, Scratch, View};
-use super::{AnalysisOptions, StratumKind};
+use super::options::AnalysisOptions;
 use crate::singularity::OneSheet;
-use crate::stratify::site::{FitUsed, On, Witness};
-use crosscap_core::{Located, Neighbor, Scalar, SingularityModel, squared_distance};
+use crate::stratify::site::{FitUsed, On, StratumKind, Witness};
+use crosscap_core::{Located, Neighbor, Row, Scalar, SingularityModel, squared_distance};
 
 /// What one point turned out to be.
 #[derive(Debug)]
@@ -48,9 +48,9 @@ enum Outcome {
 
 /// A row whose ball is to be explained.
 struct Question<'q> {
-    row: usize,
+    row: Row,
     /// Rows that the fit speaks for as well, where they are close enough.
-    others: &'q [usize],
+    others: &'q [Row],
     dimension: usize,
 }
 
@@ -62,8 +62,8 @@ impl<S: Scalar> Fitter<'_, S> {
     /// it says nothing about.
     pub(super) fn explain(
         &self,
-        i: usize,
-        others: &[usize],
+        i: Row,
+        others: &[Row],
         dimension: usize,
         options: &AnalysisOptions,
         scratch: &mut Scratch<S>,
@@ -111,8 +111,8 @@ impl<S: Scalar> Fitter<'_, S> {
             dimension,
         } = *question;
         let tuning = &self.tuning.analysis;
-        scratch.near.extend(others.iter().map(|&index| Neighbor {
-            index,
+        scratch.near.extend(others.iter().map(|row| Neighbor {
+            index: row.index(),
             distance: S::zero(),
         }));
         let plain = match OneSheet.decompose(&self.local(view, &OneSheet, scratch)) {
@@ -131,7 +131,7 @@ impl<S: Scalar> Fitter<'_, S> {
             explains: &|fit| dimension < 3 || fit.residual < tuning.gain * plain,
         };
         let reach = (tuning.speaks_for * view.radius).powi(2);
-        let close = |row: usize| self.space.square(i, row) < reach;
+        let close = |row: Row| self.square(i, row) < reach;
         if let Some(mut best) = self.compete(i, view, others.len(), &rules, scratch) {
             let located = self.locate(i, view, others.len(), &mut best, scratch);
             let model = self.models[best.model].as_ref();
@@ -159,7 +159,7 @@ impl<S: Scalar> Fitter<'_, S> {
     /// 0-stratum that it shows near it.
     pub(super) fn verdict(
         &self,
-        row: usize,
+        row: Row,
         best: &Contender,
         view: &View,
         from: &[f64],
@@ -203,10 +203,10 @@ impl<S: Scalar> Fitter<'_, S> {
     }
 
     /// The place of a row that a fit moves from one place to another, both in the coordinates of the model.
-    pub(super) fn moved(&self, row: usize, view: &View, from: &[f64], to: &[f64]) -> Box<[f64]> {
+    pub(super) fn moved(&self, row: Row, view: &View, from: &[f64], to: &[f64]) -> Box<[f64]> {
         let shift: Vec<f64> = to.iter().zip(from).map(|(a, b)| a - b).collect();
         (view.frame.lift_vector(&shift).iter())
-            .zip(self.cloud.point(row))
+            .zip(self.cloud.point(row.index()))
             .map(|(d, x)| x.as_f64() + d)
             .collect()
     }

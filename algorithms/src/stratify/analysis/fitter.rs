@@ -1,6 +1,6 @@
 //! Balls of the space with the coordinates that models are fitted in.
 
-use super::Analyzer;
+use super::analyzer::Analyzer;
 use super::ledger::{Ledger, ModelCounts};
 use crate::audit::Faults;
 use crate::execute::Execute;
@@ -8,7 +8,7 @@ use crate::principal::PrincipalFrame;
 use crate::space::Space;
 use crate::tuning::Tuning;
 use crosscap_core::{
-    DimensionEstimator, LocalPoints, Neighbor, PointCloud, Scalar, SingularityModel,
+    DimensionEstimator, LocalPoints, Neighbor, PointCloud, Row, Scalar, SingularityModel,
 };
 use std::ops::Range;
 
@@ -101,11 +101,18 @@ impl<'a, S: Scalar> Fitter<'a, S> {
     }
 
     /// The rows closer to one than `radius`, nearest first.
-    pub(in crate::stratify) fn around(&self, row: usize, radius: f64, near: &mut Vec<usize>) {
+    pub(in crate::stratify) fn around(&self, row: Row, radius: f64, near: &mut Vec<Row>) {
         let mut found = Vec::new();
-        self.space.oracle().within(row, S::of(radius), &mut found);
+        self.space
+            .oracle()
+            .within(row.index(), S::of(radius), &mut found);
         near.clear();
-        near.extend(found.iter().map(|x| x.index));
+        near.extend(found.iter().map(Neighbor::row));
+    }
+
+    /// Squared distance of two rows in the metric of the analysis.
+    pub(super) fn square(&self, a: Row, b: Row) -> f64 {
+        self.space.square(a.index(), b.index())
     }
 
     /// The ball of radius `reach` around `i` in the frame of the ball of `radius`.
@@ -114,13 +121,13 @@ impl<'a, S: Scalar> Fitter<'a, S> {
     /// distance, since a fit does not get better for more than a few hundred points.
     pub(super) fn view(
         &self,
-        i: usize,
+        i: Row,
         radius: f64,
         reach: f64,
         scratch: &mut Scratch<S>,
     ) -> Option<View> {
         let Scratch { near, rest, .. } = scratch;
-        self.space.oracle().within(i, S::of(reach), near);
+        self.space.oracle().within(i.index(), S::of(reach), near);
         // Neighbors come sorted by distance.
         let within = near.partition_point(|x| x.distance < S::of(radius));
         let stride = within.div_ceil(self.tuning.analysis.most_fitted);
@@ -130,7 +137,7 @@ impl<'a, S: Scalar> Fitter<'a, S> {
             fitted = 0;
             for k in 0..near.len() {
                 let x = near[k];
-                if k < within && (k % stride == 0 || x.index == i) {
+                if k < within && (k % stride == 0 || x.row() == i) {
                     near[fitted] = x;
                     fitted += 1;
                 } else {
@@ -143,7 +150,7 @@ impl<'a, S: Scalar> Fitter<'a, S> {
         let rows = near[..fitted].iter().map(|x| x.index);
         Some(View {
             frame: PrincipalFrame::of(self.cloud, rows),
-            center: near[..fitted].iter().position(|x| x.index == i)?,
+            center: near[..fitted].iter().position(|x| x.row() == i)?,
             fitted,
             within,
             radius,

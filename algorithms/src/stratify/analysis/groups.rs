@@ -1,11 +1,11 @@
 //! Many points explained by few fits: the fit of a neighborhood says for all points near its
 //! center what a fit of their own would say.
 
-use super::AnalysisOptions;
 use super::explain::Verdict;
 use super::fitter::{Fitter, Scratch};
+use super::options::AnalysisOptions;
 use crate::execute;
-use crosscap_core::Scalar;
+use crosscap_core::{Row, Scalar, Table};
 
 /// Fits that a job takes at a time.
 const FITS_AT_ONCE: usize = 8;
@@ -13,7 +13,7 @@ const FITS_AT_ONCE: usize = 8;
 /// A row that is to be explained.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Asked {
-    pub(super) row: usize,
+    pub(super) row: Row,
     /// Fits are made about the points of the fullest neighborhoods first: those in the middle
     /// of a crossing, where both sheets show best.
     pub(super) neighbors: usize,
@@ -28,10 +28,10 @@ impl<S: Scalar> Fitter<'_, S> {
         dimension: usize,
         options: &AnalysisOptions,
         thorough: bool,
-    ) -> Vec<(usize, Verdict)> {
+    ) -> Vec<(Row, Verdict)> {
         self.sort(&mut asked);
         let mut out = Vec::with_capacity(asked.len());
-        let mut place_of = vec![u32::MAX; self.cloud.len()];
+        let mut place_of = Table::filled(self.cloud.len(), u32::MAX);
         // A curve alone is not what fits speak for.
         let spacings = if dimension > 2 {
             &self.tuning.analysis.fit_spacings[..]
@@ -63,7 +63,7 @@ impl<S: Scalar> Fitter<'_, S> {
                     }
                 }
             }
-            let mut left = vec![false; self.cloud.len()];
+            let mut left: Table<Row, bool> = Table::filled(self.cloud.len(), false);
             open.iter().for_each(|&row| left[row] = true);
             asked.retain(|a| left[a.row]);
         }
@@ -87,12 +87,12 @@ impl<S: Scalar> Fitter<'_, S> {
     fn sort(&self, asked: &mut [Asked]) {
         let mut mean = vec![0.0; self.cloud.dimension()];
         for a in asked.iter() {
-            for (m, x) in mean.iter_mut().zip(self.cloud.point(a.row)) {
+            for (m, x) in mean.iter_mut().zip(self.cloud.point(a.row.index())) {
                 *m += x.as_f64() / asked.len() as f64;
             }
         }
         let far = |a: &Asked| -> f64 {
-            let place = self.cloud.point(a.row).iter().map(|x| x.as_f64());
+            let place = self.cloud.point(a.row.index()).iter().map(|x| x.as_f64());
             place.zip(&mean).map(|(x, m)| (x - m) * (x - m)).sum()
         };
         asked.sort_by_cached_key(|a| {
@@ -103,7 +103,7 @@ impl<S: Scalar> Fitter<'_, S> {
 
     /// Centers in the order of `asked`, no two of them closer than `spacing`, each with the rows to
     /// which it is the nearest.
-    fn groups(&self, asked: &[Asked], spacing: f64, place_of: &mut [u32]) -> Vec<Group> {
+    fn groups(&self, asked: &[Asked], spacing: f64, place_of: &mut Table<Row, u32>) -> Vec<Group> {
         for (k, a) in asked.iter().enumerate() {
             place_of[a.row] = k as u32;
         }
@@ -116,13 +116,13 @@ impl<S: Scalar> Fitter<'_, S> {
             }
             let center = asked[k].row;
             let oracle = self.space.oracle();
-            oracle.indices_within(center, S::of(spacing), &mut near);
-            for &row in &near {
-                let at = place_of[row as usize];
+            oracle.indices_within(center.index(), S::of(spacing), &mut near);
+            for row in near.iter().copied().map(Row::from) {
+                let at = place_of[row];
                 if at == u32::MAX {
                     continue;
                 }
-                let square = self.space.square(center, row as usize);
+                let square = self.square(center, row);
                 if square < owner[at as usize].0 {
                     owner[at as usize] = (square, groups.len() as u32);
                 }
@@ -146,6 +146,6 @@ impl<S: Scalar> Fitter<'_, S> {
 
 /// A center with the rows that its fit is asked about.
 struct Group {
-    center: usize,
-    others: Vec<usize>,
+    center: Row,
+    others: Vec<Row>,
 }

@@ -3,16 +3,18 @@
 use super::competition::Rules;
 use super::explain::{Kind, Verdict};
 use super::fitter::{Fitter, Scratch, View};
+use super::found::Analysis;
 use super::groups::Asked;
-use super::{Analysis, AnalysisOptions, StratumKind};
-use crosscap_core::Scalar;
+use super::options::AnalysisOptions;
+use crate::stratify::site::StratumKind;
+use crosscap_core::{Row, Scalar, Table};
 
 impl<S: Scalar> Fitter<'_, S> {
     /// What a point with a neighborhood of this dimension is, unless it is regular, or fits in competition with
     /// one sheet must tell.
     pub(super) fn first_look(
         &self,
-        i: usize,
+        i: Row,
         dimension: usize,
         options: &AnalysisOptions,
         boundary: bool,
@@ -33,7 +35,7 @@ impl<S: Scalar> Fitter<'_, S> {
     /// What models say that ask for 2-dimensional neighborhoods.
     fn second_thought(
         &self,
-        i: usize,
+        i: Row,
         options: &AnalysisOptions,
         boundary: bool,
         scratch: &mut Scratch<S>,
@@ -66,7 +68,7 @@ impl<S: Scalar> Fitter<'_, S> {
     /// only the center's own.
     fn bare_curve(
         &self,
-        i: usize,
+        i: Row,
         view: &View,
         options: &AnalysisOptions,
         scratch: &mut Scratch<S>,
@@ -94,28 +96,28 @@ impl<S: Scalar> Fitter<'_, S> {
         options: &AnalysisOptions,
     ) -> Vec<Asked> {
         let tuning = &self.tuning.analysis;
-        let on_curve = |row: usize| analysis.sites[row].kind() == Some(StratumKind::Curve);
+        let on_curve = |row: Row| analysis.sites[row].kind() == Some(StratumKind::Curve);
         let mut near = Vec::new();
-        let mut covered = vec![false; analysis.sites.len()];
-        let mut beside = vec![false; analysis.sites.len()];
-        for i in 0..covered.len() {
+        let mut covered: Table<Row, bool> = Table::filled(analysis.sites.len(), false);
+        let mut beside = covered.clone();
+        for i in analysis.sites.ids() {
             if !on_curve(i) || covered[i] {
                 continue;
             }
             let eps = options.radius(i);
             let oracle = self.space.oracle();
-            oracle.indices_within(i, S::of(tuning.beside * eps), &mut near);
+            oracle.indices_within(i.index(), S::of(tuning.beside * eps), &mut near);
             for &x in &near {
-                let x = x as usize;
+                let x = Row::from(x);
                 if on_curve(x) {
                     let reach = tuning.beside_spacing * eps;
-                    covered[x] |= self.space.square(i, x) < reach.powi(2);
+                    covered[x] |= self.square(i, x) < reach.powi(2);
                 } else if analysis.dimensions[x] == 2 {
                     beside[x] = true;
                 }
             }
         }
-        (0..beside.len())
+        (beside.ids())
             .filter(|&row| beside[row])
             .map(|row| Asked { row, neighbors: 0 })
             .collect()

@@ -4,16 +4,16 @@ use super::competition::score;
 use super::fitter::{Fitter, Scratch};
 use crate::audit;
 use crate::stratify::strata::Strata;
-use crosscap_core::{Decomposition, Scalar, SingularityModel};
+use crosscap_core::{Decomposition, Neighbor, Row, Scalar, SingularityModel};
 
 impl<S: Scalar> Fitter<'_, S> {
     /// The decomposition of the ball of a point on a curve, with the rows it labels and the radius.
     pub(in crate::stratify) fn decomposition(
         &self,
         strata: &Strata,
-        i: usize,
+        i: Row,
         scratch: &mut Scratch<S>,
-    ) -> Option<(Decomposition, Vec<usize>, f64)> {
+    ) -> Option<(Decomposition, Vec<Row>, f64)> {
         let tuning = &self.tuning.analysis;
         let used = strata.sites()[i].on()?.fit?;
         let mut radius = used.radius;
@@ -22,7 +22,7 @@ impl<S: Scalar> Fitter<'_, S> {
             let mut fit_by = |model: &dyn SingularityModel| {
                 let local = self.local(&view, model, scratch);
                 let found = model.decompose(&local);
-                audit::sound(found, &local, model, i, &self.faults)
+                audit::sound(found, &local, model, i.index(), &self.faults)
             };
             let mut best = fit_by(self.models[used.model as usize].as_ref());
             if best.is_none() {
@@ -35,7 +35,7 @@ impl<S: Scalar> Fitter<'_, S> {
                     .min_by(|a, b| score(a, &view).total_cmp(&score(b, &view)));
             }
             if let Some(fit) = best {
-                let rows = scratch.near.iter().map(|x| x.index).collect();
+                let rows = scratch.near.iter().map(Neighbor::row).collect();
                 return Some((fit, rows, radius));
             }
             // The fit of a neighbor may have spoken for this point; its own ball can hold more.

@@ -1,26 +1,26 @@
 //! Which points of which cells touch which curve landmarks.
 
-use super::NONE;
+use super::Rim;
 use super::flood::Flood;
 use crate::space::Space;
 use crate::stratify::atlas::Reference;
 use crate::stratify::skeleton::Skeleton;
 use crate::stratify::strata::Strata;
 use crate::tuning::CellTuning;
-use crosscap_core::{Neighbor, PointCloud, Scalar};
+use crosscap_core::{Label, Landmark, Neighbor, PointCloud, Row, Scalar, Table};
 
 /// A flood, and what of the contacts it reached.
 pub(super) struct Hits {
     pub(super) flood: Flood,
-    counts: Vec<u32>,
-    touched: Vec<u32>,
+    counts: Table<Rim, u32>,
+    touched: Vec<Rim>,
 }
 
 impl Hits {
     pub(super) fn new(contacts: &Contacts) -> Self {
         Self {
             flood: Flood::default(),
-            counts: vec![0; contacts.groups.len()],
+            counts: Table::filled(contacts.groups.len(), 0),
             touched: Vec::new(),
         }
     }
@@ -29,30 +29,27 @@ impl Hits {
     pub(super) fn members(
         &mut self,
         contacts: &Contacts,
-        landmark_at: &[u32],
-        center: usize,
-        inside: impl Fn(usize) -> bool,
-    ) -> Vec<u32> {
+        landmark_at: &Table<Row, Option<Landmark>>,
+        center: Landmark,
+        inside: impl Fn(Landmark) -> bool,
+    ) -> Vec<Landmark> {
         let mut members = Vec::new();
         self.touched.clear();
         for &row in &self.flood.reached {
-            let k = landmark_at[row as usize];
-            if k != NONE && k as usize != center {
-                members.push(k);
-            }
-            for &g in contacts.of(row as usize) {
-                if self.counts[g as usize] == 0 {
-                    self.touched.push(g);
+            members.extend(landmark_at[row].filter(|&k| k != center));
+            for &rim in contacts.of(row) {
+                if self.counts[rim] == 0 {
+                    self.touched.push(rim);
                 }
-                self.counts[g as usize] += 1;
+                self.counts[rim] += 1;
             }
         }
-        for &g in &self.touched {
-            let group = &contacts.groups[g as usize];
-            let enough = 2 * self.counts[g as usize] as usize >= group.rows.len();
-            self.counts[g as usize] = 0;
+        for &rim in &self.touched {
+            let group = &contacts.groups[rim];
+            let enough = 2 * self.counts[rim] as usize >= group.rows.len();
+            self.counts[rim] = 0;
             if enough && group.landmark != center && inside(group.landmark) {
-                members.push(group.landmark as u32);
+                members.push(group.landmark);
             }
         }
         members.sort_unstable();
@@ -63,16 +60,16 @@ impl Hits {
 
 /// One cell at one curve landmark.
 pub(super) struct ContactGroup {
-    pub(super) landmark: usize,
+    pub(super) landmark: Landmark,
     /// The points of the cell nearest to the landmark.
-    pub(super) rows: Vec<u32>,
+    pub(super) rows: Vec<Row>,
 }
 
 /// Which points of which cells touch which curve landmarks.
 pub(in crate::stratify) struct Contacts {
-    pub(super) groups: Vec<ContactGroup>,
+    pub(super) groups: Table<Rim, ContactGroup>,
     starts: Vec<u32>,
-    entries: Vec<u32>,
+    entries: Vec<Rim>,
 }
 
 impl Contacts {
@@ -84,15 +81,15 @@ impl Contacts {
         tuning: &CellTuning,
         dl: f64,
     ) -> Self {
-        let mut groups = Vec::new();
+        let mut groups = Table::default();
         if let Some(places) = strata.places() {
             let mut near = Vec::new();
-            for (landmark, &row) in skeleton.rows().iter().enumerate() {
+            for (landmark, &row) in skeleton.rows().each() {
                 let reach = tuning.contact_reach * dl + strata.moved(row);
-                space.oracle().within(row, S::of(reach), &mut near);
+                space.oracle().within(row.index(), S::of(reach), &mut near);
                 let fit = skeleton.labelling().find(|r| r.row == row);
                 let mut cells = Self::cells(strata, places, fit, row, &near);
-                if let Some(fit) = fit.filter(|_| landmark >= skeleton.corners()) {
+                if let Some(fit) = fit.filter(|_| landmark.index() >= skeleton.corners()) {
                     // A fit may know of cells that do not touch this curve: those are farther away.
                     let own = fit.label(row).and_then(|l| fit.fit.cells_at(l));
                     cells.sort_by(|a, b| a[0].1.total_cmp(&b[0].1).then(a[0].0.cmp(&b[0].0)));
@@ -113,18 +110,19 @@ impl Contacts {
         strata: &Strata,
         places: &PointCloud<f64>,
         fit: Option<&Reference>,
-        row: usize,
+        row: Row,
         near: &[Neighbor<S>],
-    ) -> Vec<Vec<(u8, f64, u32)>> {
-        let mut cells: Vec<(u8, f64, u32)> = near
+    ) -> Vec<Vec<(Label, f64, Row)>> {
+        let mut cells: Vec<(Label, f64, Row)> = near
             .iter()
-            .filter(|x| strata.is_regular(x.index))
+            .filter(|x| strata.is_regular(x.row()))
             .filter_map(|x| {
                 let label = match fit {
-                    None => 0,
-                    Some(r) => r.label(x.index).filter(|&l| r.is_cell(l))?,
+                    None => Label::default(),
+                    Some(r) => r.label(x.row()).filter(|&l| r.is_cell(l))?,
                 };
-                Some((label, places.squared_distance(row, x.index), x.index as u32))
+                let square = places.squared_distance(row.index(), x.index);
+                Some((label, square, x.row()))
             })
             .collect();
         cells.sort_by(|a, b| {
@@ -138,16 +136,15 @@ impl Contacts {
             .collect()
     }
 
-    fn of_groups(groups: Vec<ContactGroup>, n: usize) -> Self {
-        let mut pairs: Vec<(u32, u32)> = groups
-            .iter()
-            .enumerate()
-            .flat_map(|(g, group)| group.rows.iter().map(move |&r| (r, g as u32)))
+    fn of_groups(groups: Table<Rim, ContactGroup>, n: usize) -> Self {
+        let mut pairs: Vec<(Row, Rim)> = groups
+            .each()
+            .flat_map(|(rim, group)| group.rows.iter().map(move |&r| (r, rim)))
             .collect();
         pairs.sort_unstable();
         let mut starts = vec![0u32; n + 1];
         for &(r, _) in &pairs {
-            starts[r as usize + 1] += 1;
+            starts[r.index() + 1] += 1;
         }
         for i in 0..n {
             starts[i + 1] += starts[i];
@@ -155,12 +152,13 @@ impl Contacts {
         Self {
             groups,
             starts,
-            entries: pairs.into_iter().map(|(_, g)| g).collect(),
+            entries: pairs.into_iter().map(|(_, rim)| rim).collect(),
         }
     }
 
     /// The groups that a row belongs to.
-    fn of(&self, row: usize) -> &[u32] {
+    fn of(&self, row: Row) -> &[Rim] {
+        let row = row.index();
         &self.entries[self.starts[row] as usize..self.starts[row + 1] as usize]
     }
 }

@@ -1,18 +1,18 @@
 //! What labels every point: the fit that is nearest.
 
-use super::NONE;
+use super::Labelling;
 use crate::execute::{self, Execute};
 use crate::stratify::atlas::Reference;
-use crosscap_core::{PointCloud, squared_distance};
+use crosscap_core::{Label, PointCloud, Row, Table, squared_distance};
 
 /// Fits that a job takes at a time.
 const FITS_AT_ONCE: usize = 8;
 
 /// For every row the fit that is nearest, how far it is, and the label that it gives.
 pub(in crate::stratify) struct Labels {
-    nearest: Vec<u32>,
-    closest: Vec<f64>,
-    own: Vec<u8>,
+    nearest: Table<Row, Option<Labelling>>,
+    closest: Table<Row, f64>,
+    own: Table<Row, Label>,
 }
 
 impl Labels {
@@ -26,16 +26,16 @@ impl Labels {
         execute: &dyn Execute,
     ) -> Self {
         let mut labels = Self {
-            nearest: vec![NONE; count],
-            closest: vec![f64::INFINITY; count],
-            own: vec![0; count],
+            nearest: Table::filled(count, None),
+            closest: Table::filled(count, f64::INFINITY),
+            own: Table::filled(count, Label::default()),
         };
         let Some(places) = places else {
             return labels;
         };
         let squares = |k: usize| -> Vec<f64> {
-            let origin = places.point(fits[k].row);
-            let rows = fits[k].labels().iter().map(|x| x.0 as usize);
+            let origin = places.point(fits[k].row.index());
+            let rows = fits[k].labels().iter().map(|x| x.0.index());
             rows.map(|row| squared_distance(origin, places.point(row)))
                 .collect()
         };
@@ -43,10 +43,9 @@ impl Labels {
         for (k, (fit, squares)) in fits.iter().zip(all).enumerate() {
             let limit = (reach * fit.radius).powi(2);
             for (&(row, label), square) in fit.labels().iter().zip(squares) {
-                let row = row as usize;
                 if square < limit && square < labels.closest[row] {
                     labels.closest[row] = square;
-                    labels.nearest[row] = k as u32;
+                    labels.nearest[row] = Some(Labelling::new(k));
                     labels.own[row] = label;
                 }
             }
@@ -56,19 +55,18 @@ impl Labels {
 
     /// Whether `i` and `j` are in different strata, or on the curve itself, by the fit that is
     /// nearest to either and knows both. `fits` are those that the labels were made of.
-    pub(super) fn separated(&self, fits: &[&Reference], i: usize, j: usize) -> bool {
+    pub(super) fn separated(&self, fits: &[&Reference], i: Row, j: Row) -> bool {
         let (first, second) = if self.closest[j] < self.closest[i] {
             (j, i)
         } else {
             (i, j)
         };
         for (from, to) in [(first, second), (second, first)] {
-            let k = self.nearest[from];
-            if k == NONE {
+            let Some(k) = self.nearest[from] else {
                 continue;
-            }
-            let fit = fits[k as usize];
-            let label = if self.nearest[to] == k {
+            };
+            let fit = fits[k.index()];
+            let label = if self.nearest[to] == Some(k) {
                 Some(self.own[to])
             } else {
                 fit.label(to)

@@ -1,11 +1,11 @@
 //! The landmarks around each landmark, in each of its cells.
 
-use super::NONE;
 use super::contacts::{Contacts, Hits};
 use super::graph::CellGraph;
 use super::labels::Labels;
 use super::plain::{self, Surroundings};
 use super::region::Region;
+use super::{Node, Rim};
 use crate::execute;
 use crate::space::Space;
 use crate::stratify::analysis::Analyzer;
@@ -15,7 +15,8 @@ use crate::stratify::curve_ends::Wards;
 use crate::stratify::skeleton::Skeleton;
 use crate::stratify::strata::Strata;
 use crosscap_core::{
-    CellNeighborhood, Error, Neighbor, NeighborhoodOracle, PointCloud, Scalar, squared_distance,
+    CellNeighborhood, Error, Landmark, Neighbor, NeighborhoodOracle, PointCloud, Row, Scalar,
+    Table, squared_distance,
 };
 
 /// Floods that a job takes at a time.
@@ -31,7 +32,7 @@ pub(in crate::stratify) struct Neighborhoods<'n, 'a, S: Scalar> {
     /// What measures the charts.
     pub(in crate::stratify) charts: ChartSpace<'a, S>,
     /// Rows of the landmarks, those of the skeleton first.
-    pub(in crate::stratify) rows: &'n [usize],
+    pub(in crate::stratify) rows: &'n Table<Landmark, Row>,
     /// Radius of the charts.
     pub(in crate::stratify) reach: f64,
     pub(in crate::stratify) dl: f64,
@@ -39,14 +40,17 @@ pub(in crate::stratify) struct Neighborhoods<'n, 'a, S: Scalar> {
 
 /// A neighborhood to be found: that of a landmark of a cell, or of one cell at a curve landmark.
 struct Job {
-    landmark: usize,
-    group: Option<usize>,
+    landmark: Landmark,
+    group: Option<Rim>,
 }
+
+/// How far a graph reaches about every landmark.
+type Reach = Table<Landmark, f64>;
 
 /// What has been found so far.
 struct Progress {
     jobs: Vec<Job>,
-    members: Vec<Option<Vec<u32>>>,
+    members: Vec<Option<Vec<Landmark>>>,
 }
 
 /// The extent of one chart: which nodes of the graph and which landmarks are in it, how far from its center.
@@ -66,7 +70,7 @@ enum Measure<'m, 'a, S: Scalar> {
 }
 
 impl<S: Scalar> Extent<'_, S> {
-    fn holds_node(&self, graph: &CellGraph, node: usize) -> bool {
+    fn holds_node(&self, graph: &CellGraph, node: Node) -> bool {
         match self {
             // Places of nodes lie together in memory.
             Self::Places { origin, square, .. } => {
@@ -76,7 +80,7 @@ impl<S: Scalar> Extent<'_, S> {
         }
     }
 
-    fn holds(&self, row: usize) -> bool {
+    fn holds(&self, row: Row) -> bool {
         match self {
             Self::Places { square, .. } => self.rank(row) < *square,
             Self::Metric(ball) => ball.holds(row),
@@ -84,9 +88,11 @@ impl<S: Scalar> Extent<'_, S> {
     }
 
     /// A number that orders rows by their distance from the center.
-    fn rank(&self, row: usize) -> f64 {
+    fn rank(&self, row: Row) -> f64 {
         match self {
-            Self::Places { places, origin, .. } => squared_distance(origin, places.point(row)),
+            Self::Places { places, origin, .. } => {
+                squared_distance(origin, places.point(row.index()))
+            }
             Self::Metric(ball) => ball.distance(row),
         }
     }
@@ -101,7 +107,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
         let cut = self.flood(&mut progress)?;
         let Progress { jobs, members } = progress;
         let all = jobs.iter().zip(members).map(|(job, members)| {
-            let center = job.landmark as u32;
+            let center = job.landmark;
             let others = members.unwrap_or_default();
             CellNeighborhood {
                 center,
@@ -112,20 +118,21 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
     }
 
     fn jobs(&self) -> Vec<Job> {
-        let own = (self.skeleton.rows().len()..self.rows.len()).map(|landmark| Job {
+        let in_cells = self.rows.ids().skip(self.skeleton.rows().len());
+        let own = in_cells.map(|landmark| Job {
             landmark,
             group: None,
         });
-        let groups = self.contacts.groups.iter().enumerate();
-        own.chain(groups.map(|(g, group)| Job {
+        let groups = self.contacts.groups.each();
+        own.chain(groups.map(|(rim, group)| Job {
             landmark: group.landmark,
-            group: Some(g),
+            group: Some(rim),
         }))
         .collect()
     }
 
     /// Neighborhoods of one sheet without a curve, where nearness alone says what belongs together.
-    fn plain(&self, jobs: &[Job]) -> Result<Vec<Option<Vec<u32>>>, Error> {
+    fn plain(&self, jobs: &[Job]) -> Result<Vec<Option<Vec<Landmark>>>, Error> {
         if let ChartSpace::Metric(_) = self.charts {
             return Ok(jobs.iter().map(|_| None).collect());
         }
@@ -133,12 +140,12 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
         let places = self.places()?;
         let width = places.dimension();
         let mut landmarks = Vec::with_capacity(self.rows.len() * width);
-        for &row in self.rows {
-            landmarks.extend_from_slice(places.point(row));
+        for row in self.rows {
+            landmarks.extend_from_slice(places.point(row.index()));
         }
         let mut on_curves = landmarks[..self.skeleton.rows().len() * width].to_vec();
         for fit in self.skeleton.labelling() {
-            on_curves.extend_from_slice(places.point(fit.row));
+            on_curves.extend_from_slice(places.point(fit.row.index()));
         }
         let gap = tuning.curve_gap * self.dl;
         let around = Surroundings::new(width, landmarks, &on_curves, gap, tuning.flat * self.dl);
@@ -146,7 +153,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
             if jobs[j].group.is_some() {
                 return None;
             }
-            let landmark = jobs[j].landmark as u32;
+            let landmark = jobs[j].landmark;
             let mut radius = self.reach;
             let mut members = around.near(landmark, radius);
             for _ in 0..tuning.widenings {
@@ -156,8 +163,8 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
                 radius *= tuning.widening;
                 members = around.near(landmark, radius);
             }
-            let center = self.rows[jobs[j].landmark];
-            let far = |k: u32| places.squared_distance(center, self.rows[k as usize]);
+            let center = self.rows[landmark].index();
+            let far = |k: Landmark| places.squared_distance(center, self.rows[k].index());
             around
                 .is_plain(landmark, radius, &members, scratch)
                 .then(|| nearest_first(members, far))
@@ -175,15 +182,15 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
     fn flood(&self, progress: &mut Progress) -> Result<usize, Error> {
         let tuning = &self.analyzer.tuning.cells;
         let Progress { jobs, members } = progress;
-        let mut landmark_at = vec![NONE; self.strata.len()];
-        for (k, &row) in self.rows.iter().enumerate() {
-            landmark_at[row] = k as u32;
+        let mut landmark_at = Table::filled(self.strata.len(), None);
+        for (k, &row) in self.rows.each() {
+            landmark_at[row] = Some(k);
         }
         let mut pending: Vec<usize> = (0..jobs.len()).filter(|&j| members[j].is_none()).collect();
         let mut radius = self.reach;
         let mut cut = None;
         // The last graph, and how far it reaches about every landmark.
-        let mut known: Option<(CellGraph, Vec<f64>)> = None;
+        let mut known: Option<(CellGraph, Reach)> = None;
         for widening in 0..=tuning.widenings {
             if pending.is_empty() {
                 break;
@@ -218,7 +225,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
         jobs: &[Job],
         pending: &[usize],
         radius: f64,
-    ) -> Result<(CellGraph, Vec<f64>), Error> {
+    ) -> Result<(CellGraph, Reach), Error> {
         let Analyzer {
             space,
             execute,
@@ -230,10 +237,10 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
             // Nothing is known of how far a chart reaches in straight lines.
             ChartSpace::Metric(_) => (
                 Region::everything(self.strata.len(), self.dl),
-                vec![f64::INFINITY; self.rows.len()],
+                Table::filled(self.rows.len(), f64::INFINITY),
             ),
             ChartSpace::Places => {
-                let mut reach = vec![0.0_f64; self.rows.len()];
+                let mut reach: Reach = Table::filled(self.rows.len(), 0.0);
                 for &j in pending {
                     // Where curves cut charts they are likely to be widened.
                     let spare = match jobs[j].group {
@@ -243,14 +250,14 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
                     reach[jobs[j].landmark] = spare * radius;
                 }
                 let all = self.rows.iter().copied().zip(reach.iter().copied());
-                let centers: Vec<(usize, f64)> = all.filter(|x| x.1 > 0.0).collect();
+                let centers: Vec<(Row, f64)> = all.filter(|x| x.1 > 0.0).collect();
                 let cloud = space.coordinates("since charts are laid in them")?;
                 let places = self.places()?;
                 let region = Region::about(cloud, places, &centers, self.dl, *execute);
                 (region, reach)
             }
         };
-        let separated = |i: usize, j: usize| self.labels.separated(&fits, i, j);
+        let separated = |i: Row, j: Row| self.labels.separated(&fits, i, j);
         let graph = CellGraph::new(space, self.strata, separated, &region, *execute)?;
         Ok((graph, reach))
     }
@@ -261,8 +268,8 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
         jobs: &[Job],
         pending: &[usize],
         radius: f64,
-        landmark_at: &[u32],
-    ) -> Result<Vec<Vec<u32>>, Error> {
+        landmark_at: &Table<Row, Option<Landmark>>,
+    ) -> Result<Vec<Vec<Landmark>>, Error> {
         let measure = self.measure()?;
         let wards = Wards::new(self.strata, self.dl);
         let held = match measure {
@@ -277,14 +284,14 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
             |(hits, ball), p| {
                 let job = &jobs[pending[p]];
                 let center = self.rows[job.landmark];
-                let own = [center as u32];
+                let own = [center];
                 let from = job
                     .group
                     .map_or(&own[..], |g| &self.contacts.groups[g].rows);
                 let extent = match measure {
                     Measure::Places(places) => Extent::Places {
                         places,
-                        origin: places.point(center),
+                        origin: places.point(center.index()),
                         square: radius * radius,
                     },
                     Measure::Metric(space) => {
@@ -292,13 +299,13 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
                         Extent::Metric(ball)
                     }
                 };
-                let ward = wards.of(center, from[0] as usize);
+                let ward = wards.of(center, from[0]);
                 hits.flood.run(graph, from, |node| {
                     wards.admits(ward, graph.row(node)) && extent.holds_node(graph, node)
                 });
-                let inside = |k: usize| extent.holds(self.rows[k]);
+                let inside = |k: Landmark| extent.holds(self.rows[k]);
                 let found = hits.members(self.contacts, landmark_at, job.landmark, inside);
-                nearest_first(found, |k| extent.rank(self.rows[k as usize]))
+                nearest_first(found, |k| extent.rank(self.rows[k]))
             },
         ))
     }
@@ -321,8 +328,8 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
 /// The points of a ball with their distances from its center, reusable.
 struct Ball<S> {
     found: Vec<Neighbor<S>>,
-    stamps: Vec<u32>,
-    distances: Vec<f64>,
+    stamps: Table<Row, u32>,
+    distances: Table<Row, f64>,
     round: u32,
 }
 
@@ -330,34 +337,34 @@ impl<S: Scalar> Ball<S> {
     fn new(n: usize) -> Self {
         Self {
             found: Vec::new(),
-            stamps: vec![0; n],
-            distances: vec![0.0; n],
+            stamps: Table::filled(n, 0),
+            distances: Table::filled(n, 0.0),
             round: 0,
         }
     }
 
-    fn fill(&mut self, oracle: &dyn NeighborhoodOracle<Scalar = S>, center: usize, radius: f64) {
+    fn fill(&mut self, oracle: &dyn NeighborhoodOracle<Scalar = S>, center: Row, radius: f64) {
         self.round += 1;
-        oracle.within(center, S::of(radius), &mut self.found);
+        oracle.within(center.index(), S::of(radius), &mut self.found);
         for x in &self.found {
-            self.stamps[x.index] = self.round;
-            self.distances[x.index] = x.distance.as_f64();
+            self.stamps[x.row()] = self.round;
+            self.distances[x.row()] = x.distance.as_f64();
         }
     }
 
-    fn holds(&self, row: usize) -> bool {
+    fn holds(&self, row: Row) -> bool {
         self.stamps[row] == self.round
     }
 
     /// Distance of a point that the ball holds.
-    fn distance(&self, row: usize) -> f64 {
+    fn distance(&self, row: Row) -> f64 {
         self.distances[row]
     }
 }
 
 /// Landmarks in order of their distance, ties by index, each once.
-fn nearest_first(members: Vec<u32>, far: impl Fn(u32) -> f64) -> Vec<u32> {
-    let mut ranked: Vec<(f64, u32)> = members.into_iter().map(|k| (far(k), k)).collect();
+fn nearest_first(members: Vec<Landmark>, far: impl Fn(Landmark) -> f64) -> Vec<Landmark> {
+    let mut ranked: Vec<(f64, Landmark)> = members.into_iter().map(|k| (far(k), k)).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     ranked.dedup();
     ranked.into_iter().map(|x| x.1).collect()

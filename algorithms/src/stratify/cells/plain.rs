@@ -3,6 +3,7 @@
 
 use crate::balls::BallTree;
 use crate::orthogonal::unit_across;
+use crosscap_core::Landmark;
 use nalgebra::{SMatrix, SVector};
 
 /// Coefficients of a quadratic height over two directions.
@@ -54,15 +55,17 @@ impl Surroundings {
         }
     }
 
-    fn place(&self, landmark: u32) -> &[f64] {
-        &self.places[landmark as usize * self.width..(landmark as usize + 1) * self.width]
+    fn place(&self, landmark: Landmark) -> &[f64] {
+        let at = landmark.index() * self.width;
+        &self.places[at..at + self.width]
     }
 
     /// The other landmarks within `radius` of one.
-    pub(super) fn near(&self, landmark: u32, radius: f64) -> Vec<u32> {
+    pub(super) fn near(&self, landmark: Landmark, radius: f64) -> Vec<Landmark> {
         let mut out = Vec::new();
         self.landmarks
             .within(self.place(landmark), radius, |other, _| {
+                let other = Landmark::from(other);
                 if other != landmark {
                     out.push(other);
                 }
@@ -74,9 +77,9 @@ impl Surroundings {
     /// lie on one sheet with it: a quadratic height over two directions, in every coordinate.
     pub(super) fn is_plain(
         &self,
-        landmark: u32,
+        landmark: Landmark,
         radius: f64,
-        members: &[u32],
+        members: &[Landmark],
         scratch: &mut Scratch,
     ) -> bool {
         let origin = self.place(landmark);
@@ -221,8 +224,9 @@ mod tests {
 
     fn middle_is_plain(places: Vec<f64>, curves: &[f64]) -> bool {
         let around = Surroundings::new(5, places, curves, 0.7, 0.1);
-        let members = around.near(40, 3.0);
-        around.is_plain(40, 3.0, &members, &mut Scratch::default())
+        let middle = Landmark::new(40);
+        let members = around.near(middle, 3.0);
+        around.is_plain(middle, 3.0, &members, &mut Scratch::default())
     }
 
     #[test]
@@ -255,8 +259,9 @@ mod tests {
     fn landmarks_on_a_line_are_not_a_sheet() {
         let line = (0..15).flat_map(|k| [f64::from(k) * 0.2, 0.0]).collect();
         let around = Surroundings::new(2, line, &[], 0.0, 0.02);
-        let members = around.near(7, 9.0);
+        let middle = Landmark::new(7);
+        let members = around.near(middle, 9.0);
         assert_eq!(members.len(), 14);
-        assert!(!around.is_plain(7, 9.0, &members, &mut Scratch::default()));
+        assert!(!around.is_plain(middle, 9.0, &members, &mut Scratch::default()));
     }
 }

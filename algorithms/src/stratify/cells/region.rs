@@ -2,12 +2,12 @@
 
 use crate::balls::BallTree;
 use crate::execute::{self, Execute};
-use crosscap_core::{PointCloud, Scalar};
+use crosscap_core::{PointCloud, Row, Scalar};
 
 /// Where floods run: some of the points, and a margin about them.
 pub(super) struct Region {
     /// Rows of the region and the margin, in order.
-    pub(super) rows: Vec<u32>,
+    pub(super) rows: Vec<Row>,
     /// Whether a row of `rows` is in the region.
     pub(super) inside: Vec<bool>,
     /// Every row this close to one of the region is in `rows`.
@@ -18,7 +18,7 @@ impl Region {
     /// All points.
     pub(super) fn everything(count: usize, margin: f64) -> Self {
         Self {
-            rows: (0..count as u32).collect(),
+            rows: (0..count).map(Row::new).collect(),
             inside: vec![true; count],
             margin,
         }
@@ -31,14 +31,14 @@ impl Region {
     pub(super) fn about<S: Scalar>(
         cloud: &PointCloud<S>,
         places: &PointCloud<f64>,
-        centers: &[(usize, f64)],
+        centers: &[(Row, f64)],
         margin: f64,
         execute: &dyn Execute,
     ) -> Self {
         let width = cloud.dimension();
         let mut about = Vec::with_capacity(centers.len() * width);
         for &(row, _) in centers {
-            about.extend_from_slice(places.point(row));
+            about.extend_from_slice(places.point(row.index()));
         }
         let tree = BallTree::new(width, &about);
         let widest = centers.iter().map(|c| c.1).fold(0.0, f64::max) + margin;
@@ -57,11 +57,12 @@ impl Region {
             });
             (near, inside)
         });
-        let rows: Vec<u32> = (0..count as u32)
-            .filter(|&row| found[row as usize].0)
+        let rows: Vec<Row> = (0..count)
+            .filter(|&row| found[row].0)
+            .map(Row::new)
             .collect();
         Self {
-            inside: rows.iter().map(|&row| found[row as usize].1).collect(),
+            inside: rows.iter().map(|&row| found[row.index()].1).collect(),
             rows,
             margin,
         }

@@ -1,10 +1,11 @@
 //! Entering what a model says about the end of a curve.
 
-use super::{Answer, EndRegion};
+use super::part::Answer;
+use super::region::EndRegion;
 use crate::stratify::site::{On, StratumKind};
 use crate::stratify::strata::Strata;
 use crate::tuning::EndTuning;
-use crosscap_core::{PointCloud, Scalar, squared_distance};
+use crosscap_core::{PointCloud, Row, Scalar, squared_distance};
 
 /// Puts the rows of a region where the model says that they are.
 pub(super) fn enter<S: Scalar>(
@@ -18,7 +19,7 @@ pub(super) fn enter<S: Scalar>(
         settled,
         eps,
     } = answer;
-    let mut beside: Vec<(usize, On)> = Vec::new();
+    let mut beside: Vec<(Row, On)> = Vec::new();
     let mut at_point = false;
     for row in settled {
         at_point |= (row.on.as_ref()).is_some_and(|on| on.kind == StratumKind::Point);
@@ -34,7 +35,7 @@ pub(super) fn enter<S: Scalar>(
 
 /// The nearest row stands for the point.
 fn stand_in<S: Scalar>(strata: &mut Strata, cloud: &PointCloud<S>, region: &EndRegion) {
-    let far = |row: usize| region.far(cloud, row);
+    let far = |row: Row| region.far(cloud, row);
     let nearest = (region.rows()).min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
     let fit = region.rows().find_map(|r| strata.sites()[r].on()?.fit);
     if let Some(row) = nearest {
@@ -54,11 +55,11 @@ fn fill_gaps<S: Scalar>(
     strata: &mut Strata,
     cloud: &PointCloud<S>,
     region: &EndRegion,
-    mut beside: Vec<(usize, On)>,
+    mut beside: Vec<(Row, On)>,
     gap: f64,
 ) {
     beside.sort_by(|a, b| a.1.moved.total_cmp(&b.1.moved).then(a.0.cmp(&b.0)));
-    let place_of = |row: usize| {
+    let place_of = |row: Row| {
         let on = strata.sites()[row].on()?;
         let curve = on.kind != StratumKind::Point;
         Some((on.cells, on.place.clone()?)).filter(|_| curve)

@@ -3,12 +3,12 @@
 use crate::stratify::analysis::Analyzer;
 use crate::stratify::site::StratumKind;
 use crate::stratify::strata::Strata;
-use crosscap_core::{Neighbor, Scalar};
+use crosscap_core::{Neighbor, Row, Scalar};
 
 /// A point of a curve that may be its end.
 struct Candidate {
-    row: usize,
-    /// How far the middle of the curve about it is off.
+    row: Row,
+    /// How far the middle of the curve about it is off: half way between where it reaches to both sides.
     shift: f64,
     /// Radius of the analysis there.
     eps: f64,
@@ -18,20 +18,19 @@ struct Candidate {
 /// most come first, and no two are in one ball.
 ///
 /// O(c n) for c points of double curves with n neighbors each.
-pub(super) fn ends<S: Scalar>(analyzer: &Analyzer<'_, S>, strata: &Strata) -> Vec<(usize, f64)> {
+pub(super) fn ends<S: Scalar>(analyzer: &Analyzer<'_, S>, strata: &Strata) -> Vec<(Row, f64)> {
     let Some(places) = strata.places() else {
         return Vec::new();
     };
     let mut near: Vec<Neighbor<S>> = Vec::new();
-    let mut mean = vec![0.0; places.dimension()];
-    let mut found: Vec<Candidate> = (0..strata.len())
+    let mut found: Vec<Candidate> = (strata.rows())
         .filter(|&row| is_double(strata, row))
-        .filter_map(|row| candidate(analyzer, strata, row, &mut near, &mut mean))
+        .filter_map(|row| candidate(analyzer, strata, row, &mut near))
         .collect();
     found.sort_by(|a, b| b.shift.total_cmp(&a.shift).then(a.row.cmp(&b.row)));
-    let mut ends: Vec<(usize, f64)> = Vec::new();
+    let mut ends: Vec<(Row, f64)> = Vec::new();
     for Candidate { row, eps, .. } in found {
-        let free = |x: &(usize, f64)| places.squared_distance(row, x.0) > eps * eps;
+        let free = |x: &(Row, f64)| places.squared_distance(row.index(), x.0.index()) > eps * eps;
         if ends.iter().all(free) {
             ends.push((row, eps));
         }
@@ -39,7 +38,7 @@ pub(super) fn ends<S: Scalar>(analyzer: &Analyzer<'_, S>, strata: &Strata) -> Ve
     ends
 }
 
-fn is_double(strata: &Strata, row: usize) -> bool {
+fn is_double(strata: &Strata, row: Row) -> bool {
     strata.kind(row) == Some(StratumKind::Curve) && strata.cells(row) > 2
 }
 
@@ -47,38 +46,42 @@ fn is_double(strata: &Strata, row: usize) -> bool {
 fn candidate<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
     strata: &Strata,
-    row: usize,
+    row: Row,
     near: &mut Vec<Neighbor<S>>,
-    mean: &mut [f64],
 ) -> Option<Candidate> {
     let (places, oracle) = (strata.places()?, analyzer.space.oracle());
     // The fit of the row itself may have shrunk.
     let mut eps = strata.radius(row).unwrap_or(0.0);
     for _ in 0..2 {
-        oracle.within(row, S::of(eps), near);
-        let radii = near.iter().filter_map(|x| strata.radius(x.index));
+        oracle.within(row.index(), S::of(eps), near);
+        let radii = near.iter().filter_map(|x| strata.radius(x.row()));
         eps = radii.fold(eps, f64::max);
     }
-    oracle.within(row, S::of(eps), near);
-    if near.iter().any(|x| stops(analyzer, strata, x.index)) {
+    oracle.within(row.index(), S::of(eps), near);
+    if near.iter().any(|x| stops(analyzer, strata, x.row())) {
         return None;
     }
-    mean.fill(0.0);
-    let mut count = 0.0;
-    for x in near.iter().filter(|x| is_double(strata, x.index)) {
-        count += 1.0;
-        let places = places.point(x.index).iter().zip(places.point(row));
-        for (m, (o, p)) in mean.iter_mut().zip(places) {
-            *m += o - p;
-        }
-    }
-    let shift = mean.iter().map(|m| m * m).sum::<f64>().sqrt() / count;
+    // Points of the curve lie unevenly along it: how far they reach tells more than their mean.
+    let curve = || {
+        near.iter()
+            .map(|x| x.row())
+            .filter(|&x| is_double(strata, x))
+    };
+    let square = |x: Row| places.squared_distance(row.index(), x.index());
+    let farthest = curve().max_by(|&a, &b| square(a).total_cmp(&square(b)).then(b.cmp(&a)))?;
+    let ahead = square(farthest).sqrt();
+    let behind = curve().map(|x| {
+        // Along the way to the farthest point, by the law of cosines.
+        let across = places.squared_distance(farthest.index(), x.index());
+        (square(x) + ahead * ahead - across) / (2.0 * ahead)
+    });
+    let shift = (ahead + behind.fold(0.0, f64::min)) / 2.0;
     (shift > analyzer.tuning.ends.shift * eps).then_some(Candidate { row, shift, eps })
 }
 
 /// Whether a row is a point in which double curves stop. One at which only curves without a surface do is
 /// none: near a pinch point a narrow strip of the sheet passes for such a curve.
-fn stops<S: Scalar>(analyzer: &Analyzer<'_, S>, strata: &Strata, row: usize) -> bool {
+fn stops<S: Scalar>(analyzer: &Analyzer<'_, S>, strata: &Strata, row: Row) -> bool {
     let Some(on) = (strata.sites()[row].on()).filter(|on| on.kind == StratumKind::Point) else {
         return false;
     };

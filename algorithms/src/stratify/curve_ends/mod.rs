@@ -3,27 +3,23 @@
 
 mod enter;
 mod free;
+mod innermost;
+mod part;
 mod region;
 mod wards;
 
-pub(super) use region::{EndRegion, Settled, innermost};
+pub(super) use innermost::innermost;
+pub(super) use region::{EndRegion, Settled};
 pub(super) use wards::Wards;
 
 use super::analysis::{Analyzer, Scratch};
 use super::site::{Site, StratumKind};
 use super::strata::Strata;
 use crosscap_core::{Error, Scalar};
+use part::Answer;
 
 /// A region, and what becomes of its rows.
 type Found = (EndRegion, Vec<Settled>);
-
-/// What a model says about the end of a curve.
-struct Answer {
-    region: EndRegion,
-    settled: Vec<Settled>,
-    /// Radius of the analysis there.
-    eps: f64,
-}
 
 /// Asks what is at the ends of double curves, and enters the answers. Where no curve was found, or no model
 /// knows of ends, nothing is done.
@@ -69,7 +65,7 @@ pub(super) fn explain<S: Scalar>(
             });
         }
     }
-    region::part(fitter.cloud, &mut answers);
+    part::part(fitter.cloud, &mut answers, tuning.overlap);
     for answer in answers {
         enter::enter(strata, fitter.cloud, answer, tuning);
     }

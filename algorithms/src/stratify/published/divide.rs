@@ -4,7 +4,7 @@ use super::Published;
 use crate::principal::PrincipalFrame;
 use crate::singularity::PlanePair;
 use crate::stratify::analysis::{Fitter, Scratch};
-use crosscap_core::Scalar;
+use crosscap_core::{Row, Scalar};
 use nalgebra::Vector3;
 
 /// Fewest points that a quadric of 9 degrees of freedom is fitted to.
@@ -12,7 +12,7 @@ const QUADRIC_POINTS: usize = 10;
 
 /// A point of a neighborhood with its distances to the two planes.
 pub(super) struct Divided {
-    pub(super) row: usize,
+    pub(super) row: Row,
     pub(super) planes: [f64; 2],
 }
 
@@ -28,7 +28,7 @@ impl Published {
     pub(super) fn divide<S: Scalar>(
         &self,
         fitter: &Fitter<'_, S>,
-        i: usize,
+        i: Row,
         reach: f64,
         scratch: &mut Scratch<S>,
     ) -> Option<Vec<Divided>> {
@@ -36,7 +36,7 @@ impl Published {
         fitter
             .space
             .oracle()
-            .within(i, S::of(reach.max(self.eps)), near);
+            .within(i.index(), S::of(reach.max(self.eps)), near);
         let fitted = near.partition_point(|x| x.distance < S::of(self.eps));
         if fitted < QUADRIC_POINTS {
             return None;
@@ -65,7 +65,7 @@ impl Published {
                 .zip(points)
                 .take_while(|(x, _)| x.distance < S::of(reach))
                 .map(|(x, place)| Divided {
-                    row: x.index,
+                    row: x.row(),
                     planes: distances(&place),
                 })
                 .collect(),

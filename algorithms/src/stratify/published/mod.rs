@@ -26,7 +26,7 @@ use super::producer::WaistProducer;
 use super::site::{FitUsed, On, Site, StratumKind};
 use super::stratifier::{Ground, Stratifier};
 use crate::execute;
-use crosscap_core::{Error, LandmarkSelector, LocalChart, Radii, Scalar};
+use crosscap_core::{Error, LandmarkSelector, LocalChart, Radii, Row, Scalar, Table};
 
 /// Parameters of the published method, lengths in the unit of the data.
 ///
@@ -82,7 +82,7 @@ pub struct Published {
     /// Take every point as 2-dimensional and look for no curve.
     pub surface: bool,
     /// Rows that lie on the boundary.
-    pub boundary: Vec<usize>,
+    pub boundary: Vec<Row>,
 }
 
 impl Published {
@@ -126,28 +126,28 @@ impl Published {
         let balls = fitter.dimensions(Radii::Same(self.eps))?;
         let found = execute::map(analyzer.execute, n, Scratch::default, |scratch, i| {
             (balls[i].dimension == 3)
-                .then(|| self.singular_part(&fitter, i, scratch))
+                .then(|| self.singular_part(&fitter, Row::new(i), scratch))
                 .flatten()
         });
-        let mut on_curve = vec![false; n];
+        let mut on_curve: Table<Row, bool> = Table::filled(n, false);
         let mut total = 0usize;
-        for (i, curve) in found.into_iter().enumerate() {
-            let dimension = balls[i].dimension as u8;
-            out.dimensions[i] = dimension;
-            total += balls[i].neighbors as usize;
+        for ((row, ball), curve) in boundary.ids().zip(&balls).zip(found) {
+            let dimension = ball.dimension as u8;
+            out.dimensions[row] = dimension;
+            total += ball.neighbors as usize;
             match curve {
-                Some(rows) => rows.iter().for_each(|&r| on_curve[r as usize] = true),
-                None if dimension != 2 => out.unexplained.push(i),
+                Some(rows) => rows.iter().for_each(|&r| on_curve[r] = true),
+                None if dimension != 2 => out.unexplained.push(row),
                 None => {}
             }
         }
         out.mean_neighbors = total as f64 / n.max(1) as f64;
-        for (row, site) in out.sites.iter_mut().enumerate().filter(|x| on_curve[x.0]) {
+        for row in on_curve.ids().filter(|&row| on_curve[row]) {
             let kind = match boundary[row] {
                 true => StratumKind::Point,
                 false => StratumKind::Curve,
             };
-            *site = Site::On(Box::new(self.on(kind)));
+            out.sites[row] = Site::On(Box::new(self.on(kind)));
         }
         Ok(out)
     }
@@ -170,12 +170,12 @@ impl Published {
     fn singular_part<S: Scalar>(
         &self,
         fitter: &Fitter<'_, S>,
-        i: usize,
+        i: Row,
         scratch: &mut Scratch<S>,
-    ) -> Option<Vec<u32>> {
+    ) -> Option<Vec<Row>> {
         let parts = self.divide(fitter, i, self.eps, scratch)?;
         let on_curve = parts.iter().filter(|p| p.on_curve(self.ep));
-        Some(on_curve.map(|p| p.row as u32).collect())
+        Some(on_curve.map(|p| p.row).collect())
     }
 
     /// The producer of a waist (the paper's section 2.2). `analysis` is that of [`Self::analyze`] with the

@@ -6,7 +6,7 @@ use crate::landmarks::RandomGreedy;
 use crate::metric::{BruteForceOracle, Euclidean};
 use crate::space::Space;
 use crate::stratify::{Stratification, Tuning, WaistProducer};
-use crosscap_core::PointCloud;
+use crosscap_core::{Landmark, PointCloud};
 
 fn published() -> Published {
     Published {
@@ -71,7 +71,7 @@ fn crossing_planes_are_divided_at_their_line() {
         ..published()
     };
     let (analysis, out) = run(&method, &cloud).unwrap();
-    for (i, x) in cloud.iter().enumerate() {
+    for (i, x) in analysis.sites.ids().zip(cloud.iter()) {
         let near = x[0].abs().max(x[2].abs()) < 0.06;
         assert_eq!(
             analysis.sites[i].kind() == Some(StratumKind::Curve),
@@ -79,15 +79,15 @@ fn crossing_planes_are_divided_at_their_line() {
             "{x:?}"
         );
     }
-    let on_curve = |k: u32| out.waist.strata[k as usize] == 1;
+    let on_curve = |k: Landmark| out.waist.strata[k] == 1;
     let mut divided = 0;
     for near in &out.waist.neighborhoods {
         assert!(!on_curve(near.center));
-        if analysis.dimensions[out.rows[near.center as usize]] != 3 {
+        if analysis.dimensions[out.rows[near.center]] != 3 {
             continue;
         }
         divided += 1;
-        let sheet = |k: u32| cloud.point(out.rows[k as usize])[2] == 0.0;
+        let sheet = |k: Landmark| cloud.point(out.rows[k].index())[2] == 0.0;
         for &m in &near.members {
             assert!(on_curve(m) || sheet(m) == sheet(near.center));
         }
@@ -105,13 +105,13 @@ fn landmarks_keep_their_separation_and_curves_come_first() {
     };
     let (analysis, out) = run(&method, &cloud).unwrap();
     assert!(out.counts.curve_landmarks >= 5);
-    for (k, &row) in out.rows.iter().enumerate() {
+    for (k, &row) in out.rows.each() {
         assert_eq!(
             analysis.sites[row].kind() == Some(StratumKind::Curve),
-            k < out.counts.curve_landmarks
+            k.index() < out.counts.curve_landmarks
         );
-        for &other in &out.rows[..k] {
-            assert!(cloud.squared_distance(row, other).sqrt() >= 0.2);
+        for other in out.rows.iter().take(k.index()) {
+            assert!(cloud.squared_distance(row.index(), other.index()).sqrt() >= 0.2);
         }
     }
 }
@@ -138,10 +138,8 @@ fn a_rejected_fit_leaves_the_neighborhood_whole() {
     assert_eq!(analysis.unexplained.len(), analysis.candidates());
     for near in &out.waist.neighborhoods {
         let ball = out.rows.iter().filter(|&&r| {
-            cloud
-                .squared_distance(r, out.rows[near.center as usize])
-                .sqrt()
-                < 0.5
+            let center = out.rows[near.center];
+            cloud.squared_distance(r.index(), center.index()).sqrt() < 0.5
         });
         assert_eq!(near.members.len(), ball.count());
     }
@@ -162,11 +160,14 @@ fn a_given_boundary_becomes_one_ring_of_one_cell() {
     let cloud = PointCloud::new(2, rows).unwrap();
     let method = Published {
         surface: true,
-        boundary: (0..40).collect(),
+        boundary: (0..40).map(Row::new).collect(),
         ..published()
     };
     let (analysis, out) = run(&method, &cloud).unwrap();
-    assert_eq!(analysis.sites[0].kind(), Some(StratumKind::Boundary));
+    assert_eq!(
+        analysis.sites[Row::new(0)].kind(),
+        Some(StratumKind::Boundary)
+    );
     let ring = out.counts.curve_landmarks;
     assert!(ring >= 10);
     assert_eq!(out.waist.curve_edges.len(), ring);
@@ -190,7 +191,7 @@ fn what_has_no_meaning_is_refused() {
             ..published()
         },
         Published {
-            boundary: vec![9999],
+            boundary: vec![Row::new(9999)],
             ..published()
         },
     ] {

@@ -10,8 +10,8 @@ use crate::stratify::site::StratumKind;
 use crate::stratify::strata::Strata;
 use crate::stratify::stratification::Stratification;
 use crosscap_core::{
-    CellNeighborhood, CurveEdge, Error, LandmarkSelector, LocalChart, Scalar, SparseDistances,
-    StratifiedLandmarks,
+    CellNeighborhood, CurveEdge, Error, Landmark, LandmarkSelector, LocalChart, Neighbor, Row,
+    Scalar, SparseDistances, StratifiedLandmarks, Table,
 };
 
 /// Makes the waist of a cloud by the published method.
@@ -53,41 +53,47 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
     }
 
     /// Whether a point was said to be on the boundary.
-    fn is_given(&self, row: usize) -> bool {
+    fn is_given(&self, row: Row) -> bool {
         let kind = self.strata.kind(row);
         matches!(kind, Some(StratumKind::Boundary | StratumKind::Point))
     }
 
     /// Rows of the landmarks, those on curves first, and how many these are.
-    fn landmarks(&self) -> Result<(Vec<usize>, usize), Error> {
+    fn landmarks(&self) -> Result<(Table<Landmark, Row>, usize), Error> {
         let Published { dl, seed, .. } = self.method;
         let oracle = self.analyzer.space.oracle();
         let (others, on_curves): (Vec<usize>, Vec<usize>) =
-            (0..self.strata.len()).partition(|&i| self.strata.is_regular(i));
+            (0..self.strata.len()).partition(|&i| self.strata.is_regular(Row::new(i)));
         let mut rows = self.selector.select(oracle, &on_curves, &[], dl, seed)?;
         let count = rows.len();
         rows.extend(self.selector.select(oracle, &others, &rows, dl, seed)?);
-        Ok((rows, count))
+        Ok((rows.into_iter().map(Row::new).collect(), count))
     }
 
     /// The members of every neighborhood, the center first.
-    fn neighborhoods(&self, rows: &[usize], on_curves: usize) -> Result<Vec<Vec<u32>>, Error> {
-        let mut landmark_at = vec![None; self.strata.len()];
-        for (k, &row) in rows.iter().enumerate() {
-            landmark_at[row] = Some(k as u32);
+    fn neighborhoods(
+        &self,
+        rows: &Table<Landmark, Row>,
+        on_curves: usize,
+    ) -> Result<Vec<Vec<Landmark>>, Error> {
+        let mut landmark_at: Table<Row, Option<Landmark>> = Table::filled(self.strata.len(), None);
+        for (k, &row) in rows.each() {
+            landmark_at[row] = Some(k);
         }
         let fitter = match self.method.surface {
             true => None,
             false => Some(self.analyzer.fitter("since planes are fitted in them")?),
         };
         let of = |scratch: &mut Scratch<S>, k: usize| {
+            let center = Landmark::new(k);
+            let own = rows[center];
             let near = if k < on_curves {
-                self.along_curve(fitter.as_ref(), rows[k], scratch)
+                self.along_curve(fitter.as_ref(), own, scratch)
             } else {
-                self.in_sheet(fitter.as_ref(), rows[k], scratch)
+                self.in_sheet(fitter.as_ref(), own, scratch)
             };
-            let others = near.into_iter().filter(|&row| row != rows[k]);
-            std::iter::once(k as u32)
+            let others = near.into_iter().filter(|&row| row != own);
+            std::iter::once(center)
                 .chain(others.filter_map(|row| landmark_at[row]))
                 .collect()
         };
@@ -96,7 +102,11 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
     }
 
     /// Distances within all neighborhoods.
-    fn distances(&self, rows: &[usize], all: &[Vec<u32>]) -> Result<SparseDistances<S>, Error> {
+    fn distances(
+        &self,
+        rows: &Table<Landmark, Row>,
+        all: &[Vec<Landmark>],
+    ) -> Result<SparseDistances<S>, Error> {
         let metric = match &self.charts {
             ChartSpace::Places => self.analyzer.space.metric(),
             ChartSpace::Metric(space) => space.metric(),
@@ -111,9 +121,9 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
     fn in_sheet(
         &self,
         fitter: Option<&Fitter<'_, S>>,
-        i: usize,
+        i: Row,
         scratch: &mut Scratch<S>,
-    ) -> Vec<usize> {
+    ) -> Vec<Row> {
         let divided = fitter.filter(|_| self.analysis.dimensions[i] == 3);
         if let Some(fitter) = divided {
             let parts = self.method.divide(fitter, i, self.method.tri_eps, scratch);
@@ -136,9 +146,9 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
     fn along_curve(
         &self,
         fitter: Option<&Fitter<'_, S>>,
-        i: usize,
+        i: Row,
         scratch: &mut Scratch<S>,
-    ) -> Vec<usize> {
+    ) -> Vec<Row> {
         if self.is_given(i) {
             let mut rows = self.ball(i, scratch);
             rows.retain(|&r| self.is_given(r));
@@ -148,11 +158,11 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
             return Vec::new();
         };
         let oracle = self.analyzer.space.oracle();
-        oracle.within(i, S::of(self.method.eps), &mut scratch.near);
-        let centers: Vec<usize> = scratch
+        oracle.within(i.index(), S::of(self.method.eps), &mut scratch.near);
+        let centers: Vec<Row> = scratch
             .near
             .iter()
-            .map(|x| x.index)
+            .map(Neighbor::row)
             .filter(|&j| self.analysis.dimensions[j] == 3)
             .collect();
         for j in centers {
@@ -169,28 +179,28 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
     }
 
     /// The points within tri_eps of point `i`, nearest first.
-    fn ball(&self, i: usize, scratch: &mut Scratch<S>) -> Vec<usize> {
+    fn ball(&self, i: Row, scratch: &mut Scratch<S>) -> Vec<Row> {
         let oracle = self.analyzer.space.oracle();
-        oracle.within(i, S::of(self.method.tri_eps), &mut scratch.near);
-        scratch.near.iter().map(|x| x.index).collect()
+        oracle.within(i.index(), S::of(self.method.tri_eps), &mut scratch.near);
+        scratch.near.iter().map(Neighbor::row).collect()
     }
 }
 
 impl<S: Scalar> WaistProducer<S> for PublishedCut<'_, '_, S> {
     /// The method knows no other landmarks than those that are drawn: `extra` is left out.
-    fn waist(&self, _extra: &[usize]) -> Result<Stratification<S>, Error> {
+    fn waist(&self, _extra: &[Row]) -> Result<Stratification<S>, Error> {
         let (rows, on_curves) = self.landmarks()?;
         let all = self.neighborhoods(&rows, on_curves)?;
         let distances = self.distances(&rows, &all)?;
         let edges = curve_edges(&all[..on_curves], &distances, self.chart)?;
         let curve_edges: Vec<CurveEdge> = (edges.into_iter())
             .map(|(a, b)| {
-                let bounds = [a, b].iter().all(|&k| self.is_given(rows[k as usize]));
-                CurveEdge::new(a, b, if bounds { 1 } else { 4 })
+                let bounds = [a, b].iter().all(|&k| self.is_given(rows[k]));
+                CurveEdge::new(a.into(), b.into(), if bounds { 1 } else { 4 })
             })
             .collect();
-        let mut strata = vec![2u8; rows.len()];
-        strata[..on_curves].fill(1);
+        let mut strata = Table::filled(rows.len(), 2);
+        strata.as_mut_slice()[..on_curves].fill(1);
         let neighborhoods: Vec<CellNeighborhood> = (all.into_iter().skip(on_curves))
             .map(|members| CellNeighborhood {
                 center: members[0],
@@ -210,12 +220,12 @@ impl<S: Scalar> WaistProducer<S> for PublishedCut<'_, '_, S> {
 /// Joins every curve landmark to its neighbors in its 1-D chart, one landmark after another; pairs in
 /// increasing order. The center is the first of each neighborhood.
 fn curve_edges<S: Scalar>(
-    neighborhoods: &[Vec<u32>],
+    neighborhoods: &[Vec<Landmark>],
     distances: &SparseDistances<S>,
     chart: &dyn LocalChart,
-) -> Result<Vec<(u32, u32)>, Error> {
-    let mut joined: Vec<Vec<u32>> = vec![Vec::new(); neighborhoods.len()];
-    for (center, members) in neighborhoods.iter().enumerate() {
+) -> Result<Vec<(Landmark, Landmark)>, Error> {
+    let mut joined: Table<Landmark, Vec<Landmark>> = Table::filled(neighborhoods.len(), Vec::new());
+    for (center, members) in joined.ids().zip(neighborhoods) {
         let count = members.len();
         if count < 2 {
             continue;
@@ -235,7 +245,7 @@ fn curve_edges<S: Scalar>(
             return Err(Error::Law {
                 plugin: chart.name().into(),
                 law: "finite distances give finite coordinates",
-                point: center,
+                point: center.index(),
                 detail: format!("{} coordinates for {count} points", places.len()),
             });
         }
@@ -248,14 +258,13 @@ fn curve_edges<S: Scalar>(
             let next = beyond().min_by(|&a, &b| ahead(a).total_cmp(&ahead(b)).then(a.cmp(&b)));
             if let Some(k) = next {
                 joined[center].push(members[k]);
-                joined[members[k] as usize].push(center as u32);
+                joined[members[k]].push(center);
             }
         }
     }
-    let mut edges: Vec<(u32, u32)> = joined
-        .iter()
-        .enumerate()
-        .flat_map(|(a, ends)| ends.iter().map(move |&b| (a as u32, b)))
+    let mut edges: Vec<(Landmark, Landmark)> = joined
+        .each()
+        .flat_map(|(a, ends)| ends.iter().map(move |&b| (a, b)))
         .filter(|&(a, b)| a < b)
         .collect();
     edges.sort_unstable();

@@ -1,11 +1,12 @@
 //! The graph of the points of a kind of curve, with the corners behind them.
 
+use super::Skeleton;
 use super::ends::{bridges, free_ends};
+use super::ground::Ground;
 use super::nodes::Nodes;
 use super::sweep::components;
-use super::{Ground, Skeleton};
 use crate::stratify::site::StratumKind;
-use crosscap_core::Scalar;
+use crosscap_core::{Label, Row, Scalar, Table};
 
 /// Nodes and corners, joined where a curve goes from one to the other.
 pub(super) struct CurveGraph {
@@ -48,14 +49,14 @@ impl CurveGraph {
             members.iter().for_each(|&k| part[k] = p);
         }
         let reach = ground.tuning.join * ground.dl;
-        for &corner in &skeleton.rows[..skeleton.corners] {
+        for &corner in skeleton.corner_rows() {
             let stub: Vec<bool> = (self.parts.iter())
                 .map(|members| {
                     let near = |&k: &usize| ground.distance(corner, rows[k]) < ground.dl;
                     members.iter().all(near)
                 })
                 .collect();
-            let mut branches: Vec<(u8, usize, f64)> = Vec::new();
+            let mut branches: Vec<(Label, usize, f64)> = Vec::new();
             for (k, &row) in rows.iter().enumerate() {
                 let d = ground.distance(corner, row);
                 if d > reach || stub[part[k]] {
@@ -79,8 +80,9 @@ impl CurveGraph {
         }
     }
 
-    /// The branch of a corner that a node is on; `None` for a node that is on none.
-    fn branch(&self, skeleton: &Skeleton, corner: usize, node: usize) -> Option<u8> {
+    /// The branch of a corner that a node is on; `None` for a node that is on none. Where the fit about the corner tells no
+    /// branches apart, all are one.
+    fn branch(&self, skeleton: &Skeleton, corner: Row, node: usize) -> Option<Label> {
         let at_point = || {
             skeleton
                 .corner_fits()
@@ -90,7 +92,7 @@ impl CurveGraph {
             (StratumKind::Boundary, found) => found.map(|(_, l)| l),
             (_, Some((at, l))) if skeleton.corner_fit(at).row == corner => Some(l),
             _ if at_point() => None,
-            _ => Some(0),
+            _ => Some(Label::default()),
         }
     }
 
@@ -109,7 +111,7 @@ impl CurveGraph {
             })
             .map(|members| free_ends(&self.links, members, first_corner, distance))
             .collect();
-        let place = |k: usize| ground.places.point(rows[k]);
+        let place = |k: usize| ground.places.point(rows[k].index());
         let parted = |a: usize, b: usize| self.nodes.parted(ground, a, b);
         let reach = ground.tuning.bridge * ground.dl;
         let bridges = bridges(&self.links, &ends, place, reach, parted);
@@ -129,9 +131,9 @@ fn near_nodes<S: Scalar>(ground: &Ground<'_, '_, S>, nodes: &Nodes) -> Vec<Vec<(
         strata, tuning, dl, ..
     } = *ground;
     let rows = &nodes.rows;
-    let mut at = vec![usize::MAX; strata.len()];
+    let mut at: Table<Row, Option<usize>> = Table::filled(strata.len(), None);
     for (k, &row) in rows.iter().enumerate() {
-        at[row] = k;
+        at[row] = Some(k);
     }
     let slack = 2.0 * rows.iter().map(|&r| strata.moved(r)).fold(0.0, f64::max);
     let mut links: Vec<Vec<(usize, f64)>> = vec![Vec::new(); rows.len()];
@@ -145,10 +147,9 @@ fn near_nodes<S: Scalar>(ground: &Ground<'_, '_, S>, nodes: &Nodes) -> Vec<Vec<(
         };
         ground.fitter.around(row, reach + slack, &mut near);
         for &x in &near {
-            let other = at[x];
-            if other == usize::MAX || other == k {
+            let Some(other) = at[x].filter(|&other| other != k) else {
                 continue;
-            }
+            };
             let d = ground.distance(row, x);
             if d <= reach && !nodes.parted(ground, k, other) {
                 links[k].push((other, d));

@@ -1,12 +1,13 @@
 //! Landmarks and chain edges along the parts of a kind of curve.
 
+use super::Skeleton;
 use super::ends::free_ends;
 use super::graph::CurveGraph;
+use super::ground::Ground;
 use super::nodes::Nodes;
 use super::sweep::{adjacent, sweep, without_triangles};
-use super::{Ground, Skeleton};
 use crate::stratify::site::StratumKind;
-use crosscap_core::{CurveEdge, Scalar};
+use crosscap_core::{CurveEdge, Landmark, Row, Scalar};
 
 /// Landmarks and edges of a chain, by nodes of its graph.
 struct Chain {
@@ -66,12 +67,12 @@ impl Skeleton {
         separation: f64,
     ) -> Chain {
         let rows = &part.graph.nodes.rows;
-        let distance = |a: usize, b: usize| ground.distance(a, b);
+        let distance = |a: Row, b: Row| ground.distance(a, b);
         let mut chosen: Vec<usize> = Vec::new();
         for &k in &part.order {
             let row = rows[k];
             let free = (chosen.iter().rev()).all(|&c| distance(rows[c], row) >= separation)
-                && (self.rows[..before].iter()).all(|&r| distance(r, row) >= ground.dl);
+                && (self.rows.iter().take(before)).all(|&r| distance(r, row) >= ground.dl);
             if free {
                 chosen.push(k);
             }
@@ -90,7 +91,7 @@ impl Skeleton {
         });
         let first_corner = part.graph.first_corner();
         let row_of = |k: usize| match k.checked_sub(first_corner) {
-            Some(corner) => self.rows[corner],
+            Some(corner) => self.rows[Landmark::new(corner)],
             None => rows[k],
         };
         let length = |a: usize, b: usize| distance(row_of(a), row_of(b));
@@ -109,16 +110,19 @@ impl Skeleton {
         let cells = part.cells(ground);
         let rows = &part.graph.nodes.rows;
         self.rows.extend(chain.chosen.iter().map(|&k| rows[k]));
-        self.cells.resize(self.rows.len(), cells);
+        self.cells.extend(chain.chosen.iter().map(|_| cells));
         let first_corner = part.graph.first_corner();
         let position = |k: usize| match k.checked_sub(first_corner) {
-            Some(corner) => corner,
+            Some(corner) => Landmark::new(corner),
             // Sources are corners or chosen, so it is there.
-            None => before + chain.chosen.iter().position(|&c| c == k).unwrap_or(0),
+            None => {
+                let at = chain.chosen.iter().position(|&c| c == k);
+                Landmark::new(before + at.unwrap_or(0))
+            }
         };
         for (a, b) in chain.edges {
-            let ends = [a, b].map(|k| position(k) as u32);
-            self.edges.push(CurveEdge::new(ends[0], ends[1], cells));
+            let [a, b] = [a, b].map(|k| position(k).into());
+            self.edges.push(CurveEdge::new(a, b, cells));
         }
     }
 }

@@ -6,30 +6,31 @@
 
 mod ends;
 mod graph;
+mod ground;
 mod join;
 mod lay;
 mod nodes;
 mod sweep;
 mod thin;
 
-use super::analysis::{Analyzer, Fitter};
+use super::analysis::Analyzer;
 use super::atlas::{Atlas, FitId, Reference};
 use super::site::StratumKind;
 use super::strata::Strata;
 use super::stratification::PointStratum;
-use crate::tuning::SkeletonTuning;
-use crosscap_core::{CurveEdge, Error, PointCloud, Scalar, SingularityModel};
+use crosscap_core::{CurveEdge, Error, Landmark, Row, Scalar, SingularityModel, Table};
+use ground::Ground;
 use thin::thin;
 
 /// Landmarks on points and curves, with the chains.
 #[derive(Default)]
 pub(super) struct Skeleton {
     /// Rows of the landmarks, points first.
-    rows: Vec<usize>,
+    rows: Table<Landmark, Row>,
     /// How many of them are points.
     corners: usize,
     /// How many cells meet in the curve of each landmark, in the order of `rows`; 0 for points.
-    cells: Vec<u8>,
+    cells: Table<Landmark, u8>,
     /// Chain edges between positions in `rows`.
     edges: Vec<CurveEdge>,
     /// All fits.
@@ -38,22 +39,6 @@ pub(super) struct Skeleton {
     corner_fits: Vec<FitId>,
     /// Those that label the points of the cloud.
     labelling: Vec<FitId>,
-}
-
-/// What the skeleton is laid on.
-struct Ground<'g, 'a, S: Scalar> {
-    fitter: &'g Fitter<'a, S>,
-    strata: &'g Strata,
-    places: &'g PointCloud<f64>,
-    tuning: &'g SkeletonTuning,
-    dl: f64,
-}
-
-impl<S: Scalar> Ground<'_, '_, S> {
-    /// Distance of the places of two rows.
-    fn distance(&self, a: usize, b: usize) -> f64 {
-        self.places.squared_distance(a, b).sqrt()
-    }
 }
 
 impl Skeleton {
@@ -81,11 +66,11 @@ impl Skeleton {
             tuning: &analyzer.tuning.skeleton,
             dl,
         };
-        out.rows = thin(&ground, dl, StratumKind::Point);
+        out.rows = thin(&ground, dl, StratumKind::Point).into();
         out.corners = out.rows.len();
-        out.cells = vec![0; out.corners];
-        out.atlas.fit(&fitter, strata, &out.rows);
-        out.corner_fits = out.atlas.about_all(&out.rows);
+        out.cells = Table::filled(out.corners, 0);
+        out.atlas.fit(&fitter, strata, out.rows.as_slice());
+        out.corner_fits = out.atlas.about_all(out.rows.as_slice());
         for kind in [StratumKind::Boundary, StratumKind::Curve] {
             out.lay_kind(&ground, kind);
         }
@@ -100,7 +85,7 @@ impl Skeleton {
     /// Makes the fits that label points: about every landmark, and along the curves between them.
     fn label<S: Scalar>(&mut self, ground: &Ground<'_, '_, S>) {
         let strata = ground.strata;
-        let fitted: Vec<usize> = (self.rows.iter().copied())
+        let fitted: Vec<Row> = (self.rows.iter().copied())
             .filter(|&r| strata.radius(r).is_some())
             .collect();
         self.atlas.fit(ground.fitter, strata, &fitted);
@@ -110,7 +95,7 @@ impl Skeleton {
         if !least.is_finite() {
             return;
         }
-        let known: Vec<usize> = self.labelling().map(|r| r.row).collect();
+        let known: Vec<Row> = self.labelling().map(|r| r.row).collect();
         let spacing = ground.tuning.label_spacing * least;
         let mut more = thin(ground, spacing, StratumKind::Curve);
         more.retain(|row| !known.contains(row));
@@ -119,8 +104,13 @@ impl Skeleton {
     }
 
     /// Rows of the landmarks, points first.
-    pub(super) fn rows(&self) -> &[usize] {
+    pub(super) fn rows(&self) -> &Table<Landmark, Row> {
         &self.rows
+    }
+
+    /// Rows of the landmarks that are points.
+    fn corner_rows(&self) -> &[Row] {
+        &self.rows.as_slice()[..self.corners]
     }
 
     /// How many of the landmarks are points.
@@ -157,14 +147,14 @@ impl Skeleton {
         self.corner_fits()
             .filter(|r| r.has_points())
             .filter_map(|r| {
-                let landmark = self.rows[..self.corners].iter().position(|&c| c == r.row)?;
+                let landmark = self.corner_rows().iter().position(|&c| c == r.row)?;
                 let count = |d| r.fit.strata.iter().filter(|s| s.dimension == d).count();
                 Some(PointStratum {
-                    landmark: landmark as u32,
+                    landmark: Landmark::new(landmark),
                     curves: count(1),
                     cells: count(2),
                     link: (strata.sites()[r.row].on()?.fit)
-                        .and_then(|used| models[usize::from(used.model)].link()),
+                        .and_then(|used| models[usize::from(used.model)].link_of(&r.fit)),
                 })
             })
             .collect()

@@ -1,17 +1,18 @@
 //! The points of a kind of curve that chains are laid over, with what fits about corners say of them.
 
+use super::Skeleton;
+use super::ground::Ground;
 use super::thin::thin;
-use super::{Ground, Skeleton};
 use crate::stratify::site::StratumKind;
-use crosscap_core::Scalar;
+use crosscap_core::{Label, Row, Scalar};
 
 /// The branch of a curve at a corner: the position of the fit about the corner, and its label.
-pub(super) type Branch = (usize, u8);
+pub(super) type Branch = (usize, Label);
 
 /// Thinned points of a kind of curve.
 pub(super) struct Nodes {
     pub(super) kind: StratumKind,
-    pub(super) rows: Vec<usize>,
+    pub(super) rows: Vec<Row>,
     /// The branch that each is on, where a fit about a corner tells.
     pub(super) branches: Vec<Option<Branch>>,
 }
@@ -28,12 +29,14 @@ impl Nodes {
         // Next to a corner the points of a boundary are in the band of both sheets: which
         // branch they are on cannot be told, and the corner stands for them.
         rows.retain(|&row| {
-            let corners = &skeleton.rows[..skeleton.corners];
+            let corners = skeleton.corner_rows();
             corners.iter().all(|&c| ground.distance(c, row) > spacing)
                 && label(skeleton, ground, row).is_none_or(|(k, l)| {
                     let corner = skeleton.corner_fit(k);
                     match kind {
                         StratumKind::Curve => !corner.is_point(l),
+                        // A fit with a point knows the boundaries that end in it.
+                        _ if corner.has_points() && corner.is_curve(l) => true,
                         _ => corner.is_cell(l) || ground.distance(corner.row, row) > ground.dl,
                     }
                 })
@@ -47,29 +50,31 @@ impl Nodes {
             rows,
             branches: labels,
         };
-        if kind == StratumKind::Curve {
-            nodes.keep_arcs(skeleton, ground);
-        }
+        nodes.keep_arcs(skeleton, ground);
         nodes
     }
 
-    /// Only 0-strata tell arcs apart. Where the bands of two arcs run together, the nearest point that is
-    /// on one arc alone decides.
+    /// 0-strata tell arcs apart, and where a boundary was given the cells at a corner do. Where the bands of two arcs run
+    /// together, or a point of a cell fills a gap of one, the nearest point that is on one arc alone decides.
     fn keep_arcs<S: Scalar>(&mut self, skeleton: &Skeleton, ground: &Ground<'_, '_, S>) {
-        let on_arc: Vec<(usize, Branch)> = (self.rows.iter().zip(&self.branches))
+        let on_arc: Vec<(Row, Branch)> = (self.rows.iter().zip(&self.branches))
             .filter_map(|(&row, &found)| Some((row, found?)))
             .filter(|&(_, (k, l))| {
                 let corner = skeleton.corner_fit(k);
                 corner.has_points() && corner.is_curve(l)
             })
             .collect();
+        let by_cells = self.kind == StratumKind::Boundary;
         for (found, &row) in self.branches.iter_mut().zip(&self.rows) {
             *found = found.and_then(|(k, l)| {
                 let corner = skeleton.corner_fit(k);
-                if corner.is_curve(l) {
-                    return corner.has_points().then_some((k, l));
+                if !corner.has_points() {
+                    return by_cells.then_some((k, l));
                 }
-                let far = |x: &(usize, Branch)| ground.distance(x.0, row);
+                if corner.is_curve(l) {
+                    return Some((k, l));
+                }
+                let far = |x: &(Row, Branch)| ground.distance(x.0, row);
                 let own = on_arc.iter().filter(|x| x.1.0 == k);
                 own.min_by(|a, b| far(a).total_cmp(&far(b))).map(|x| x.1)
             });
@@ -94,7 +99,7 @@ impl Nodes {
 }
 
 /// What the nearest fit about a corner that knows a row says of it.
-fn label<S: Scalar>(skeleton: &Skeleton, ground: &Ground<'_, '_, S>, row: usize) -> Option<Branch> {
+fn label<S: Scalar>(skeleton: &Skeleton, ground: &Ground<'_, '_, S>, row: Row) -> Option<Branch> {
     skeleton
         .corner_fits()
         .enumerate()

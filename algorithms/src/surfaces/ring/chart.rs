@@ -1,6 +1,6 @@
 //! The conformations as a graph over the tangent plane at one of them.
 
-use super::RingConformations;
+use super::conformations::RingConformations;
 use nalgebra::DVector;
 
 /// The surface as a graph over the tangent plane at one of its places.

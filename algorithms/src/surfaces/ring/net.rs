@@ -1,7 +1,8 @@
 //! Charts that cover the conformations, each sheet by itself.
 
 use super::chart::{COVER, Chart, Scratch, squared_distance};
-use super::{RingConformations, RingError};
+use super::conformations::RingConformations;
+use super::error::RingError;
 use crate::surfaces::Random;
 use nalgebra::DMatrix;
 use std::collections::HashMap;

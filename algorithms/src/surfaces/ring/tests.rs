@@ -1,5 +1,9 @@
+use super::draw::SEPARATION;
+use super::net::Net;
 use super::*;
-use crate::surfaces::thin;
+use crate::surfaces::{Random, thin};
+use crosscap_core::PointCloud;
+use std::f64::consts::TAU;
 
 /// Smallest singular value of the derivative of the fixed distances along the slice: 0 on the double curves, and
 /// proportional to the distance from them nearby.

@@ -1,0 +1,33 @@
+//! Whether a short boundary goes round a hole of the points.
+//!
+//! A boundary of few edges is a hole that the landmarks do not resolve, or a triangle that is missing. The points decide: where
+//! they leave a disc empty that chance does not explain, the hole is theirs, however few edges go round it.
+
+use super::chance;
+use super::ground::COUNTED;
+use super::search::Search;
+use crosscap_core::{PointCloud, squared_distance};
+use std::f64::consts::PI;
+
+impl Search<'_> {
+    /// Whether chance does not explain, at `significance`, how far the points are from a place amid the vertices `around` of a
+    /// boundary. O(points) for each of the places: the mean of the vertices and the middles between two.
+    pub fn is_opening(&self, points: &PointCloud<f64>, around: &[u32], significance: f64) -> bool {
+        let density = around.iter().map(|&v| self.ground.density[v as usize]);
+        let least = density.fold(f64::INFINITY, f64::min) / (self.finer * self.finer);
+        let corner = |v: u32| self.mesh.vertices.point(v as usize);
+        let mean = |of: &[u32]| -> Vec<f64> {
+            let sum = |k: usize| of.iter().map(|&v| corner(v)[k]).sum::<f64>();
+            let width = self.mesh.vertices.dimension();
+            (0..width).map(|k| sum(k) / of.len() as f64).collect()
+        };
+        let pairs = (0..around.len()).flat_map(|k| (0..k).map(move |l| [around[k], around[l]]));
+        let places = std::iter::once(mean(around)).chain(pairs.map(|pair| mean(&pair)));
+        places.into_iter().any(|place| {
+            let squares = points.iter().map(|p| squared_distance(p, &place));
+            let expected = PI * least * squares.fold(f64::INFINITY, f64::min);
+            let measure = chance::known(self.even.random(expected), COUNTED);
+            chance::disc(points.len() as f64, measure) < significance
+        })
+    }
+}

@@ -1,0 +1,274 @@
+//! Any number of sheets that meet in one curve.
+
+use super::curve_end;
+use super::page_sheets::PageSheets;
+use super::patch::PATCH_POINTS;
+use super::plane_pair::PlanePair;
+use super::tolerance::{Tolerance, at_least, vectors};
+use crate::tuning::BookTuning;
+use crosscap_core::{
+    Decomposition, Error, Label, LocalPoints, Located, Rejection, SingularityModel, Stratum,
+};
+use nalgebra::Vector3;
+
+/// A book: pages that meet in one curve, three of which two are one sheet (a T-junction), or five and more.
+///
+/// Four pages of two sheets are [`TwoPlanes`](super::TwoPlanes) and three at angles
+/// [`YJunction`](super::YJunction), which are fitted without looking for pages, and to fewer points.
+/// The pages are read from the normals of small pieces of surface; each, or two that continue
+/// each other, become a quadratic patch, and the curve is where the patches meet.
+#[derive(Clone, Copy, Debug)]
+pub struct Book {
+    tolerance: Tolerance,
+    tuning: BookTuning,
+}
+
+/// The label of the curve; those of the pages follow.
+const CURVE: Label = Label::new(0);
+
+impl Book {
+    /// Model with fit tolerance `dp` and curve tolerance `ep`, unit of the data: a point nearer than
+    /// `ep` to the place in which the sheets meet is on the curve.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless both are positive and finite.
+    pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
+        Ok(Self {
+            tolerance: Tolerance::new(dp, ep)?,
+            tuning: BookTuning::MEASURED,
+        })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: BookTuning) -> Self {
+        Self { tuning, ..self }
+    }
+
+    /// Whether the points lie on two planes, on both sides of each: that is told in a tenth of the time that pages take.
+    fn is_crossing(&self, points: &[Vector3<f64>], radius: f64) -> bool {
+        let Ok(pair) = PlanePair::direct(points.iter().copied(), radius) else {
+            return false;
+        };
+        let mut held = [0usize; 4];
+        let mut sum = 0.0;
+        for x in points {
+            let [a, b] = [0, 1].map(|k| pair.distance(k, x));
+            let (own, other, off) = if a.abs() < b.abs() {
+                (0, b, a)
+            } else {
+                (1, a, b)
+            };
+            held[2 * own + usize::from(other >= 0.0)] += 1;
+            sum += off * off;
+        }
+        let count = points.len() as f64;
+        let least = self.tuning.share * count;
+        sum <= self.tolerance.ep.powi(2) * count && held.iter().all(|&h| h as f64 >= least)
+    }
+
+    fn fit(&self, local: &LocalPoints<'_>) -> Result<Fit, Rejection> {
+        at_least(3 * PATCH_POINTS, local)?;
+        let all: Vec<Vector3<f64>> = vectors(local);
+        let points = &all[..local.fitted];
+        if self.is_crossing(points, local.radius) {
+            return Err(Rejection::NoRealSolution);
+        }
+        let (tuning, radius) = (&self.tuning, local.radius);
+        let book = PageSheets::read(&all, local.fitted, radius, |pages| {
+            let aside = pages.place - pages.along * pages.along.dot(&pages.place);
+            let known = match (pages.out.len(), pages.pairs().len()) {
+                (3, sheets) => sheets == 0,
+                (4, sheets) => sheets == 2,
+                _ => false,
+            };
+            !known && aside.norm() <= tuning.off_center * radius
+        })?;
+        let off: Vec<f64> = points.iter().map(|x| book.off(x)).collect();
+        let sum = off.iter().map(|d| d * d).sum();
+        let residual = self.tolerance.residual(sum, points.len())?;
+        curve_end::follows(off.into_iter(), residual, self.tolerance.ep, &tuning.end)?;
+        book.are_held(points, tuning.share)?;
+        Ok(Fit {
+            all,
+            book,
+            residual,
+            ep: self.tolerance.ep,
+            radius,
+            fitted: local.fitted,
+            tuning: self.tuning,
+        })
+    }
+}
+
+/// A neighborhood with its book.
+struct Fit {
+    all: Vec<Vector3<f64>>,
+    book: PageSheets,
+    residual: f64,
+    ep: f64,
+    radius: f64,
+    fitted: usize,
+    tuning: BookTuning,
+}
+
+impl Fit {
+    /// Place on the curve near a row, where the row is near enough to tell.
+    fn on_curve(&self, row: usize) -> Option<Vector3<f64>> {
+        let x = self.all[row];
+        let pages = &self.book.pages;
+        let d = x - pages.place;
+        let aside = d - pages.along * pages.along.dot(&d);
+        // The curve is no farther from the line than it bends within the ball.
+        let step = self.tuning.step * self.radius;
+        let near = aside.norm() < step;
+        let place = self.book.meet(x, step).filter(|_| near)?;
+        ((place - x).norm() < self.tuning.witness * self.ep).then_some(place)
+    }
+
+    fn label(&self, row: usize) -> Label {
+        let x = self.all[row];
+        match self.on_curve(row) {
+            Some(place) if (place - x).norm() < self.ep => CURVE,
+            _ => Label::new(1 + self.book.page(row, &x)),
+        }
+    }
+
+    /// Whether every page has a point near a place on the curve.
+    fn is_supported(&self, place: &Vector3<f64>) -> bool {
+        let pages = 0..self.book.count();
+        pages.into_iter().all(|page| {
+            self.all[..self.fitted].iter().enumerate().any(|(row, x)| {
+                (x - place).norm() < self.tuning.support * self.radius
+                    && self.book.page(row, x) == page
+            })
+        })
+    }
+
+    fn locate(&self, row: usize) -> Option<Located> {
+        let x = self.all[row];
+        let place = self.on_curve(row).filter(|p| self.is_supported(p));
+        let on = self.label(row) == CURVE;
+        if on && place.is_none() {
+            return None;
+        }
+        Some(Located {
+            dimension: if on { 1 } else { 2 },
+            cells: self.book.count() as u8,
+            place: place.unwrap_or(x).iter().copied().collect(),
+            offset: place.map_or(f64::INFINITY, |p| (p - x).norm()),
+        })
+    }
+}
+
+impl SingularityModel for Book {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        Ok(self.decompose_about(local, &[])?.0)
+    }
+
+    fn decompose_about(
+        &self,
+        local: &LocalPoints<'_>,
+        rows: &[usize],
+    ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
+        let fit = self.fit(local)?;
+        let count = fit.book.count();
+        let center = fit.locate(local.center).ok_or(Rejection::NoRealSolution)?;
+        let located = rows.iter().map(|&row| fit.locate(row)).collect();
+        let dimension = |k: usize| if k == 0 { 1 } else { 2 };
+        let strata = (0..=count).map(|k| Stratum {
+            dimension: dimension(k),
+        });
+        let decomposition = Decomposition {
+            strata: strata.collect(),
+            labels: (0..local.len()).map(|row| fit.label(row)).collect(),
+            cells_at_curve: vec![count as u8],
+            residual: fit.residual,
+            // Besides the patches the direction and the place of the line.
+            parameters: fit.book.parameters() + 4,
+            points: Vec::new(),
+            center: center.place,
+            center_offset: center.offset,
+        };
+        Ok((decomposition, located))
+    }
+
+    fn name(&self) -> &str {
+        "book"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{PI, TAU};
+
+    const RADIUS: f64 = 1.0;
+
+    /// Half planes about the third axis at the given turns, in a ball about the origin; the first point is on the axis.
+    pub(in crate::singularity) fn book(turns: &[f64]) -> Vec<f64> {
+        let steps = || (0..12).map(|k| (f64::from(k) + 0.4) / 12.0);
+        let page = |t: f64| {
+            let (s, c) = t.sin_cos();
+            steps().flat_map(move |r| steps().map(move |z| [r * c, r * s, 2.0 * z - 1.0]))
+        };
+        (std::iter::once([0.0; 3]).chain(turns.iter().flat_map(|&t| page(t))))
+            .filter(|p| p.iter().map(|x| x * x).sum::<f64>() < RADIUS * RADIUS)
+            .flatten()
+            .collect()
+    }
+
+    fn decompose(coordinates: &[f64]) -> Result<Decomposition, Rejection> {
+        Book::new(0.2, 0.1).unwrap().decompose(&LocalPoints {
+            dimension: 3,
+            coordinates,
+            fitted: coordinates.len() / 3,
+            center: 0,
+            radius: RADIUS,
+        })
+    }
+
+    #[test]
+    fn every_page_is_a_cell() {
+        let even = |count: usize| -> Vec<f64> {
+            (0..count)
+                .map(|k| 0.2 + TAU * k as f64 / count as f64)
+                .collect()
+        };
+        for turns in [vec![0.0, 1.5, PI], even(5), even(6), even(8)] {
+            let places = book(&turns);
+            let fit = decompose(&places).unwrap();
+            assert_eq!(fit.cells_at_curve, [turns.len() as u8]);
+            assert_eq!(fit.strata.len(), 1 + turns.len());
+            assert!(fit.center_offset < 0.02, "{}", fit.center_offset);
+            let mut seen = vec![None; turns.len()];
+            for (x, &label) in places.chunks_exact(3).zip(&fit.labels) {
+                let from = x[0].hypot(x[1]);
+                assert_eq!(label == CURVE, from < 0.1, "{x:?}");
+                if label > CURVE {
+                    let turn = x[1].atan2(x[0]).rem_euclid(TAU);
+                    let page = (turns.iter()).position(|t| (t - turn).abs() < 1e-6);
+                    let known = seen[label.index() - 1].get_or_insert(page);
+                    assert_eq!(*known, page, "{x:?}");
+                }
+            }
+            assert!(seen.iter().all(Option::is_some));
+        }
+    }
+
+    #[test]
+    fn what_other_models_know_is_none() {
+        // A sheet, a crossing, a Y-junction.
+        let known = [
+            vec![0.0, PI],
+            vec![0.0, 1.5, PI, PI + 1.5],
+            vec![0.0, 2.1, 4.2],
+        ];
+        for turns in known {
+            assert!(decompose(&book(&turns)).is_err(), "{turns:?}");
+        }
+    }
+}

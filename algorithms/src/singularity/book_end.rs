@@ -1,0 +1,436 @@
+//! A curve that ends where the sheets that meet in it do.
+
+use super::curve_end::{self, CurveEnd};
+use super::page_sheets::PageSheets;
+use super::patch::PATCH_POINTS;
+use super::rim::Rim;
+use super::tolerance::{Tolerance, at_least, vectors};
+use crate::tuning::{BookEndTuning, RimTuning};
+use crosscap_core::{
+    Decomposition, Error, Link, LocalPoints, Located, Rejection, SingularityModel,
+};
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+
+/// The end of a curve in which any number of pages meet: some of the sheets end there, on boundaries that
+/// nobody has to give, and the others go on beyond it.
+///
+/// Two crossing sheets that both end, three of a foam, one that stands on another, at its rim or inside, five and more:
+/// they differ in the pages that [`Book`](super::Book) reads, and in which sheets end. Each is a
+/// quadratic patch laid out in its tangent plane at the curve, and its boundary the lowest parabola that has all
+/// of its points on one side, as [`Boundary`](super::Boundary) finds it. The curve ends where it meets all of them.
+/// A sheet that goes on has points beyond any such parabola; a seam of two cells, which
+/// continues the curve inside it, lets its two pages be told apart up to the end.
+#[derive(Clone, Copy, Debug)]
+pub struct BookEnd {
+    tolerance: Tolerance,
+    tuning: BookEndTuning,
+}
+
+/// Labels: the point and the curve; then those of rims and seams, then cells.
+const POINT: u8 = 0;
+const CURVE: u8 = 1;
+
+impl BookEnd {
+    /// Model with fit tolerance `dp` and curve tolerance `ep`, unit of the data: a point nearer than
+    /// `ep` to the place where the sheets meet is on the curve, nearer than that to the end of its sheet on the boundary.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless both are positive and finite.
+    pub fn new(dp: f64, ep: f64) -> Result<Self, Error> {
+        Ok(Self {
+            tolerance: Tolerance::new(dp, ep)?,
+            tuning: BookEndTuning::MEASURED,
+        })
+    }
+
+    /// The same, believed under other conditions.
+    pub fn tuned(self, tuning: BookEndTuning) -> Self {
+        Self { tuning, ..self }
+    }
+
+    /// The sheets and their boundaries.
+    fn fit(&self, local: &LocalPoints<'_>) -> Result<Fit, Rejection> {
+        at_least(2 * PATCH_POINTS, local)?;
+        let all: Vec<Vector3<f64>> = vectors(local);
+        let (fitted, radius) = (local.fitted, local.radius);
+        let first = PageSheets::read(&all, fitted, radius, |_| true);
+        first
+            .and_then(|book| self.ended(book, &all, local))
+            .or_else(|_| self.ended(PageSheets::crossing(&all, fitted, radius)?, &all, local))
+    }
+
+    /// The end of the curve of given pages.
+    fn ended(
+        &self,
+        book: PageSheets,
+        all: &[Vector3<f64>],
+        local: &LocalPoints<'_>,
+    ) -> Result<Fit, Rejection> {
+        let (points, radius, ep) = (&all[..local.fitted], local.radius, self.tolerance.ep);
+        let (center, tuning) = (all[local.center], &self.tuning);
+        let residual = self.follow(&book, points, radius)?;
+        book.are_held(points, tuning.share)?;
+        let meet = |x| {
+            book.meet(x, tuning.step * radius)
+                .ok_or(Rejection::NoRealSolution)
+        };
+        let near = meet(center)?;
+        // The mean of the points is the origin.
+        let along = book.pages.along;
+        let way = if along.dot(&near) < 0.0 {
+            -along
+        } else {
+            along
+        };
+        let rims = rims(&book, points, [near, way], radius, &tuning.rim)?;
+        let crossings = rims
+            .iter()
+            .flatten()
+            .map(|rim| rim.crossing(tuning.crossing));
+        let crossings: Option<Vec<Vector3<f64>>> = crossings.collect();
+        let crossings = crossings.ok_or(Rejection::NoRealSolution)?;
+        let middle = crossings.iter().sum::<Vector3<f64>>() / crossings.len().max(1) as f64;
+        let end = meet(farthest_on(&book, points, way, middle, ep, &rims))?;
+        let spacing = radius * (0.5 * PI * book.count() as f64 / points.len() as f64).sqrt();
+        let most = (tuning.apart * spacing).max(tuning.apart_ep * ep);
+        let apart = (crossings.iter()).any(|x| crossings.iter().any(|y| (x - y).norm() > most));
+        let beyond = (end - center).norm() > tuning.end.reach * radius;
+        if crossings.is_empty() || apart || beyond || book.sine(&end) < tuning.sine {
+            return Err(Rejection::NoRealSolution);
+        }
+        let names = Names::of(&book, &rims);
+        Ok(Fit {
+            all: all.to_vec(),
+            book,
+            rims,
+            names,
+            way,
+            end,
+            residual,
+            ep,
+            reach: tuning.step * radius,
+            witness: tuning.end.witness,
+        })
+    }
+
+    /// The residual of the sheets, which the points follow, better than one.
+    fn follow(
+        &self,
+        book: &PageSheets,
+        points: &[Vector3<f64>],
+        radius: f64,
+    ) -> Result<f64, Rejection> {
+        let off: Vec<f64> = points.iter().map(|x| book.off(x)).collect();
+        let sum = off.iter().map(|d| d * d).sum();
+        let residual = self.tolerance.residual(sum, points.len())?;
+        curve_end::gains(residual, points, radius, &self.tuning.end)?;
+        let ep = self.tolerance.ep;
+        curve_end::follows(off.into_iter(), residual, ep, &self.tuning.end)?;
+        Ok(residual)
+    }
+}
+
+/// The end of a curve that is about at `middle`, or where the last point of the curve is that belongs to a sheet that ends,
+/// if that is farther out: no point lies beyond the end.
+fn farthest_on(
+    book: &PageSheets,
+    points: &[Vector3<f64>],
+    way: Vector3<f64>,
+    middle: Vector3<f64>,
+    ep: f64,
+    rims: &[Option<Rim>],
+) -> Vector3<f64> {
+    let on = points.iter().zip(&book.sheets.owner).filter(|(x, sheet)| {
+        let from = *x - middle;
+        let aside = (from - way * way.dot(&from)).norm();
+        rims[usize::from(**sheet)].is_some() && aside < ep
+    });
+    let beyond = on.map(|(x, _)| way.dot(&(x - middle)));
+    middle + way * beyond.fold(0.0, f64::max)
+}
+
+/// The boundary of every sheet that ends, `None` for those that go on; a single page cannot.
+fn rims(
+    book: &PageSheets,
+    points: &[Vector3<f64>],
+    [near, way]: [Vector3<f64>; 2],
+    radius: f64,
+    tuning: &RimTuning,
+) -> Result<Vec<Option<Rim>>, Rejection> {
+    let rim = |(k, sheet): (usize, &super::page_sheets::PageSheet)| {
+        let own = points.iter().zip(&book.sheets.owner);
+        let own = own.filter(|x| usize::from(*x.1) == k).map(|x| *x.0);
+        let half = match sheet.pages {
+            [Some(page), None] => Some(book.pages.out[page]),
+            _ => None,
+        };
+        let patch = &book.sheets.patches[k];
+        match Rim::of(patch, own.collect(), near, way, half, radius, tuning) {
+            Ok(rim) => Ok(Some(rim)),
+            Err(Rejection::EmptyStratum { .. }) if half.is_none() => Ok(None),
+            Err(other) => Err(other),
+        }
+    };
+    book.of.iter().enumerate().map(rim).collect()
+}
+
+/// Labels of the pages.
+struct Names {
+    /// Of the boundary of every page, or of the seam that it ends at.
+    rims: Vec<u8>,
+    /// Of its cell.
+    cell_of: Vec<u8>,
+    /// Dimension of the stratum of every label, and how many cells meet at those that are curves.
+    strata: Vec<u8>,
+    cells_at_curve: Vec<u8>,
+}
+
+impl Names {
+    fn of(book: &PageSheets, rims: &[Option<Rim>]) -> Self {
+        let count = book.count();
+        let mut out = Self {
+            rims: vec![0; count],
+            cell_of: vec![0; count],
+            strata: vec![0, 1],
+            cells_at_curve: vec![count as u8],
+        };
+        for (sheet, rim) in book.of.iter().zip(rims) {
+            let seam = out.strata.len() as u8;
+            for page in sheet.pages.iter().flatten() {
+                out.rims[*page] = match rim {
+                    Some(_) => out.strata.len() as u8,
+                    None => seam,
+                };
+                if rim.is_some() || seam == out.strata.len() as u8 {
+                    out.strata.push(1);
+                    out.cells_at_curve.push(if rim.is_some() { 1 } else { 2 });
+                }
+            }
+        }
+        for cell in &mut out.cell_of {
+            *cell = out.strata.len() as u8;
+            out.strata.push(2);
+        }
+        out
+    }
+}
+
+/// A neighborhood with its sheets.
+struct Fit {
+    all: Vec<Vector3<f64>>,
+    book: PageSheets,
+    /// The boundary of each sheet that ends.
+    rims: Vec<Option<Rim>>,
+    names: Names,
+    /// Direction of the curve towards its end, and that end.
+    way: Vector3<f64>,
+    end: Vector3<f64>,
+    residual: f64,
+    ep: f64,
+    /// How far places on the curve are looked for.
+    reach: f64,
+    witness: f64,
+}
+
+impl CurveEnd for Fit {
+    fn strata(&self) -> &[u8] {
+        &self.names.strata
+    }
+
+    fn cells(&self) -> &[u8] {
+        &self.names.cells_at_curve
+    }
+
+    // The patches and the parabolas at their ends.
+    fn parameters(&self) -> usize {
+        self.book.parameters() + 3 * self.rims.iter().flatten().count()
+    }
+
+    fn points(&self) -> &[Vector3<f64>] {
+        &self.all
+    }
+
+    fn end(&self) -> Vector3<f64> {
+        self.end
+    }
+
+    fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    fn ep(&self) -> f64 {
+        self.ep
+    }
+
+    fn witness(&self) -> f64 {
+        self.witness
+    }
+
+    fn locate(&self, row: usize) -> (u8, Vector3<f64>, u8) {
+        let x = self.all[row];
+        let page = self.book.page(row, &x);
+        let sheet = usize::from(self.book.sheets.owner[row]);
+        let (rim_name, cell) = (self.names.rims[page], self.names.cell_of[page]);
+        let curve = (self.book.meet(x, self.reach))
+            .map(|place| (place, (place - x).norm(), self.way.dot(&(self.end - place))));
+        let pages = self.book.count() as u8;
+        let Some(rim) = &self.rims[sheet] else {
+            return match curve {
+                None => (cell, self.end, pages),
+                Some((place, off, before)) => match (off < self.ep, before) {
+                    (true, t) if t.abs() < self.ep => (POINT, self.end, 0),
+                    (true, t) if t > 0.0 => (CURVE, place, pages),
+                    (true, _) => (rim_name, place, 2),
+                    (false, t) if t > 0.0 => (cell, place, pages),
+                    (false, _) => (cell, place, 2),
+                },
+            };
+        };
+        let inside = rim.depth(&x);
+        // Rows behind those that are fitted may lie beyond it.
+        let near_rim = inside.abs() < self.ep;
+        let on_rim = rim.place(&self.book.sheets.patches[sheet], &x);
+        match (curve, near_rim) {
+            (Some((_, off, _)), true) if off < self.ep => (POINT, self.end, 0),
+            (Some((place, off, _)), false) if off < self.ep => (CURVE, place, pages),
+            (_, true) => (rim_name, on_rim, 1),
+            (Some((place, off, _)), _) if off < inside => (cell, place, pages),
+            _ => (cell, on_rim, 1),
+        }
+    }
+}
+
+impl SingularityModel for BookEnd {
+    fn local_dimension(&self) -> usize {
+        3
+    }
+
+    fn applies_to(&self, _dimension: usize) -> bool {
+        false
+    }
+
+    fn explains_ends(&self) -> bool {
+        true
+    }
+
+    fn link_of(&self, fit: &Decomposition) -> Option<Link> {
+        let (&pages, rest) = fit.cells_at_curve.split_first()?;
+        let ends = rest.iter().filter(|&&cells| cells == 1).count() as u8;
+        let arcs: Vec<[u8; 2]> = (rest.iter().filter(|&&cells| cells == 2).map(|_| [0, 0]))
+            .chain((1..=ends).map(|leaf| [0, leaf]))
+            .collect();
+        let link = Link::new(1 + ends, &arcs, 0)?;
+        let is_end = (0..=ends).any(|node| link.degree(node) == usize::from(pages));
+        is_end.then_some(link)
+    }
+
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        Ok(self.decompose_about(local, &[])?.0)
+    }
+
+    fn decompose_about(
+        &self,
+        local: &LocalPoints<'_>,
+        rows: &[usize],
+    ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
+        Ok(self.fit(local)?.decomposition(local, rows))
+    }
+
+    fn name(&self) -> &str {
+        "book-end"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crosscap_core::{Label, LinkKind};
+    use std::f64::consts::{PI, TAU};
+
+    const RADIUS: f64 = 1.0;
+
+    /// Half planes about the third axis at the given turns, up to the given heights, in a ball about the origin,
+    /// which is the first point; moved so that their mean is the origin.
+    fn pages(all: &[(f64, f64)]) -> Vec<f64> {
+        // The last points are close to the end.
+        let steps = |count: usize, at: f64| (0..count).map(move |k| (k as f64 + at) / count as f64);
+        let page = |&(turn, top): &(f64, f64)| {
+            let (s, c) = turn.sin_cos();
+            let tall = ((1.0 + top) * 14.0) as usize;
+            steps(14, 0.4).flat_map(move |r| {
+                steps(tall, 0.9).map(move |z| [r * c, r * s, (1.0 + top) * z - 1.0])
+            })
+        };
+        let places: Vec<[f64; 3]> = std::iter::once([0.0; 3])
+            .chain(all.iter().flat_map(page))
+            .filter(|p| p.iter().map(|x| x * x).sum::<f64>() < RADIUS * RADIUS)
+            .collect();
+        let mean = |k: usize| places.iter().map(|p| p[k]).sum::<f64>() / places.len() as f64;
+        let mean = [0, 1, 2].map(mean);
+        let shifted = places.iter().map(|p| [0, 1, 2].map(|k| p[k] - mean[k]));
+        shifted.flatten().collect()
+    }
+
+    fn decompose(coordinates: &[f64]) -> Result<Decomposition, Rejection> {
+        model().decompose(&LocalPoints {
+            dimension: 3,
+            coordinates,
+            fitted: coordinates.len() / 3,
+            center: 0,
+            radius: RADIUS,
+        })
+    }
+
+    fn model() -> BookEnd {
+        BookEnd::new(0.2, 0.1).unwrap()
+    }
+
+    #[test]
+    fn ends_of_all_kinds_of_books() {
+        let even = |count: usize, tops: &dyn Fn(usize) -> f64| -> Vec<(f64, f64)> {
+            (0..count)
+                .map(|k| (TAU * k as f64 / count as f64, tops(k)))
+                .collect()
+        };
+        let t = |lying: f64| vec![(0.0, lying), (1.5, 0.0), (PI, lying)];
+        let shallow = [0.0, 0.6, PI, PI + 0.6].map(|turn| (turn, 0.0)).to_vec();
+        let kinds = [
+            (even(4, &|_| 0.0), LinkKind::DoubleEnd),
+            (shallow, LinkKind::DoubleEnd),
+            (
+                even(4, &|k| f64::from(k as u8 % 2)),
+                LinkKind::RimThroughSheet,
+            ),
+            (even(3, &|_| 0.0), LinkKind::JunctionEnd),
+            (t(0.0), LinkKind::JunctionEnd),
+            (t(1.0), LinkKind::SideSheetEnd),
+            (even(5, &|_| 0.0), LinkKind::BookEnd),
+        ];
+        for (book, kind) in kinds {
+            let places = pages(&book);
+            let fit = decompose(&places).unwrap_or_else(|e| panic!("{book:?}: {e:?}"));
+            let off = (0..3)
+                .map(|k| (fit.points[0][k] - places[k]).powi(2))
+                .sum::<f64>()
+                .sqrt();
+            assert!(off < 0.06, "{book:?}: {off}");
+            let link = model().link_of(&fit).unwrap();
+            assert_eq!(link.kind(), kind, "{book:?}");
+            let degrees = (0..link.nodes() as u8).map(|node| link.degree(node));
+            assert_eq!(degrees.max(), Some(book.len()));
+            for label in (0..fit.strata.len()).map(Label::new) {
+                assert!(fit.labels.contains(&label), "{book:?}: {label}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_does_not_end_so_is_none() {
+        let crossing = |angle: f64, top: f64| [0.0, angle, PI, PI + angle].map(|turn| (turn, top));
+        // Both go on; they meet at too small an angle.
+        for book in [&crossing(1.5, 1.0)[..], &crossing(0.2, 0.0)] {
+            assert!(decompose(&pages(book)).is_err(), "{book:?}");
+        }
+    }
+}

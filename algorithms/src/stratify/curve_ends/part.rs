@@ -1,0 +1,108 @@
+//! Ends that are near to each other: a row belongs to the region of one.
+
+use super::region::{EndRegion, Settled};
+use crosscap_core::{Label, PointCloud, Row, Scalar};
+
+/// What a model says about the end of a curve.
+pub(super) struct Answer {
+    pub(super) region: EndRegion,
+    pub(super) settled: Vec<Settled>,
+    /// Radius of the analysis there.
+    pub(super) eps: f64,
+}
+
+/// Regions that overlap reach half of the way to the other's point, or more where the other does not come
+/// as near: a row belongs to one region alone. Labels reach `overlap` radii of the analysis farther than that.
+pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer], overlap: f64) {
+    let limits: Vec<f64> = (0..answers.len())
+        .map(|k| {
+            let own = &answers[k].region;
+            let others = answers.iter().enumerate().filter(|x| x.0 != k);
+            let limits = others.map(|(_, a)| {
+                let apart = own.distance(&a.region.place);
+                (apart / 2.0).max(apart - a.region.reach)
+            });
+            limits.fold(own.reach, f64::min)
+        })
+        .collect();
+    for (answer, limit) in answers.iter_mut().zip(limits) {
+        let region = &mut answer.region;
+        if limit < region.reach {
+            let far = |x: &(Row, Label)| region.far(cloud, x.0);
+            let (own, mut beyond): (Vec<_>, Vec<_>) =
+                (region.known().into_iter()).partition(|x| far(x) < limit);
+            beyond.retain(|x| far(x) < limit + overlap * answer.eps);
+            (region.labels, region.beyond) = (own, beyond);
+            region.reach = limit;
+            answer.settled.retain(|x| region.label(x.row).is_some());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crosscap_core::{Decomposition, Stratum};
+
+    /// A region about a place on a line of points one tenth apart.
+    fn answer(cloud: &PointCloud<f64>, at: f64, reach: f64) -> Answer {
+        let fit = Decomposition {
+            strata: vec![Stratum { dimension: 2 }],
+            labels: Vec::new(),
+            cells_at_curve: Vec::new(),
+            residual: 0.0,
+            parameters: 0,
+            points: vec![vec![at]],
+            center: vec![at],
+            center_offset: 0.0,
+        };
+        let mut region = EndRegion::new([Vec::new(), Vec::new()], fit, vec![at], reach);
+        let rows: Vec<Row> = (0..cloud.len())
+            .map(Row::new)
+            .filter(|&r| region.far(cloud, r) < reach)
+            .collect();
+        region.labels = rows.iter().map(|&r| (r, Label::new(0))).collect();
+        let settled = |&row: &Row| Settled {
+            row,
+            on: None,
+            beside: None,
+        };
+        Answer {
+            settled: rows.iter().map(settled).collect(),
+            region,
+            eps: reach,
+        }
+    }
+
+    #[test]
+    fn no_row_is_in_two_regions() {
+        let cloud = PointCloud::new(1, (0..31).map(|k| f64::from(k) / 10.0).collect()).unwrap();
+        let all = [(0.51, 0.7), (1.53, 0.7), (2.8, 0.4)];
+        let mut answers = all.map(|(at, reach)| answer(&cloud, at, reach));
+        part(&cloud, &mut answers, 0.5);
+        let reaches = answers.each_ref().map(|a| a.region.reach);
+        // The first two meet half way; the third is clear of both.
+        for (found, expected) in reaches.iter().zip([0.51, 0.51, 0.4]) {
+            assert!((found - expected).abs() < 1e-12, "{reaches:?}");
+        }
+        for row in (0..cloud.len()).map(Row::new) {
+            let holding = answers.iter().filter(|a| a.region.label(row).is_some());
+            assert!(holding.count() <= 1, "{row}");
+        }
+        for a in &answers {
+            assert_eq!(a.settled.len(), a.region.labels.len());
+            assert!(!a.settled.is_empty());
+        }
+        // Those next to the cut are known to both.
+        let known = answers.each_ref().map(|a| a.region.known());
+        for row in [9, 11] {
+            assert!(
+                known[..2]
+                    .iter()
+                    .all(|k| k.contains(&(Row::new(row), Label::new(0)))),
+                "{row}"
+            );
+        }
+        assert_eq!(known[2].len(), answers[2].region.labels.len());
+    }
+}

@@ -1,0 +1,140 @@
+//! When the models of the ends of curves, and of curves by themselves, believe a fit.
+
+use serde::Serialize;
+
+/// What the models of the ends of curves have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CurveEndTuning {
+    /// Greatest share of the points farther than ep from the surface.
+    pub astray: f64,
+    /// Greatest share of the residual of one quadratic patch that the fit may leave.
+    pub gain: f64,
+    /// The end lies within this share of the radius.
+    pub reach: f64,
+    /// A point off the curves tells where they are up to this many ep.
+    pub witness: f64,
+}
+
+impl CurveEndTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        astray: 0.03,
+        gain: 0.5,
+        reach: 0.7,
+        witness: 3.0,
+    };
+}
+
+/// When a pinch point is believed. *Not measured* apart from each other: with these, 13 of 13 cross-caps of 10,000 points
+/// came out right.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PinchPointTuning {
+    /// What it has in common with other ends.
+    pub end: CurveEndTuning,
+    /// Least share of the points of an even spread that each of the eight sectors about the point holds.
+    pub sector_share: f64,
+    /// How far the fold must be followed, in square roots of ep times the natural length of the map: there the
+    /// sheet opens wide enough for charts of some four ep to be laid flat across it.
+    pub fold_length: f64,
+    /// How far at least, in ep: as far as a chart of three dl reaches, at some four ep each.
+    pub fold: f64,
+    /// Least natural length of the map in radii: a map of a shorter one is bent beyond its third order.
+    pub length: f64,
+    /// Least sine of the angles between the three leading coefficients of the map.
+    pub sine: f64,
+}
+
+impl PinchPointTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        end: CurveEndTuning::MEASURED,
+        sector_share: 0.25,
+        fold_length: 2.5,
+        fold: 14.0,
+        length: 0.7,
+        sine: 0.2,
+    };
+}
+
+/// When the rim of a sheet that another one crosses is believed. They mean what those of
+/// [`BoundaryTuning`](super::BoundaryTuning) do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RimTuning {
+    /// Points that would have to lie beyond the rim.
+    pub missing: f64,
+    /// Greatest curvature of the parabola, in units of one over the radius.
+    pub bend: f64,
+}
+
+impl RimTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        missing: 10.0,
+        bend: 3.0,
+    };
+}
+
+/// When any number of pages in a curve are believed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BookTuning {
+    /// What it has in common with ends of curves: the share of points astray.
+    pub end: CurveEndTuning,
+    /// Farthest that the curve is from the middle of the points, in radii: farther out pages are missing in the ball.
+    pub off_center: f64,
+    /// Least share of the points that a page holds.
+    pub share: f64,
+    /// Farthest that a point is moved, in radii.
+    pub step: f64,
+    /// A point off the curve tells where it is up to this many ep.
+    pub witness: f64,
+    /// Every page has a point this close to a place on the curve, in radii.
+    pub support: f64,
+}
+
+impl BookTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        end: CurveEndTuning::MEASURED,
+        off_center: 0.35,
+        share: 0.04,
+        step: 0.6,
+        witness: 3.0,
+        support: 0.6,
+    };
+}
+
+/// When the end of a curve of pages is believed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BookEndTuning {
+    /// What it has in common with other ends.
+    pub end: CurveEndTuning,
+    /// Boundaries of the sheets.
+    pub rim: RimTuning,
+    /// Least share of the points that each page holds.
+    pub share: f64,
+    /// Least sine of the angle of two sheets where they end, 20 degrees: at a pinch point it goes to zero.
+    pub sine: f64,
+    /// Least cosine of the angle of the curve and the way out of a sheet.
+    pub crossing: f64,
+    /// The curve meets the boundaries at most so many spacings of the points of a page apart: each runs inside the true
+    /// one by about half a spacing, and a page on one side has nothing to hold its parabola beyond the curve.
+    pub apart: f64,
+    /// The same in ep.
+    pub apart_ep: f64,
+    /// Farthest that the center is from the curve, as a share of the radius.
+    pub step: f64,
+}
+
+impl BookEndTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        end: CurveEndTuning::MEASURED,
+        rim: RimTuning::MEASURED,
+        share: 0.03,
+        sine: 0.34,
+        crossing: 0.5,
+        apart: 2.0,
+        apart_ep: 3.0,
+        step: 0.6,
+    };
+}

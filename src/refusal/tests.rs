@@ -1,0 +1,160 @@
+//! Kinds of refusals, each provoked, and its advice followed to a verified mesh.
+
+use super::{Advice, FaultKind, Refusal};
+use crate::auto::{Auto, Pinned};
+use crate::pipeline::{Outcome, Parameters, Pipeline};
+use crosscap_algorithms::singularity::ModelName;
+use crosscap_algorithms::surfaces::{Drawing, Feature, Random, SampleSurface, Sampling};
+use crosscap_core::PointCloud;
+
+fn sample(name: &str, count: usize) -> PointCloud<f64> {
+    let surface = SampleSurface::find(name).unwrap();
+    surface.sample(&Sampling::new(count, 3)).unwrap().points
+}
+
+fn auto(eps: f64, dl: f64) -> Parameters {
+    Parameters {
+        models: ModelName::AUTO.to_vec(),
+        ..Parameters::new(eps, dl)
+    }
+}
+
+fn run(points: &PointCloud<f64>, parameters: Parameters) -> Result<Outcome, crosscap_core::Error> {
+    Pipeline::new(parameters).unwrap().reconstruct(points)
+}
+
+/// The refusal of a run that has to fail, by its first fault.
+fn refused(points: &PointCloud<f64>, parameters: Parameters, kind: FaultKind) -> Refusal {
+    let outcome = run(points, parameters);
+    assert!(!outcome.as_ref().is_ok_and(Outcome::is_verified));
+    let refusal = Refusal::of(outcome, None, Some(points));
+    assert_eq!(refusal.faults[0].kind, kind, "{refusal}");
+    refusal
+}
+
+/// The Betti numbers of a run that has to give a verified mesh.
+fn verified(points: &PointCloud<f64>, pinned: Pinned) -> [usize; 3] {
+    let search = Auto::new(pinned).reconstruct(points).unwrap();
+    match search.into_verified(Some(points)) {
+        Ok(outcome) => outcome.homology.betti_rational,
+        Err(refusal) => panic!("{refusal}"),
+    }
+}
+
+#[test]
+fn a_gap_that_is_covered_stays_open_at_the_separation_that_is_told() {
+    let drawing = Drawing {
+        count: 700,
+        size: 8.0,
+        ratio: 1.0,
+        noise: 0.0,
+        seed: 2,
+    };
+    let plate = Feature::find("plate-hole").unwrap().draw(&drawing).unwrap();
+    let coarse = auto(8.0 * plate.spacing, 4.5 * plate.spacing);
+    let refusal = refused(&plate.points, coarse, FaultKind::Gap);
+    let Advice::CloserLandmarks { dl } = refusal.advice else {
+        panic!("{refusal}")
+    };
+    let pinned = Pinned {
+        dl: Some(dl),
+        ..Pinned::default()
+    };
+    assert_eq!(verified(&plate.points, pinned), [1, 1, 0]);
+}
+
+#[test]
+fn a_surface_that_ends_unawares_is_one_with_a_boundary() {
+    let square = sample("square", 900);
+    let closed = Parameters {
+        surface: true,
+        models: vec![ModelName::TwoPlanes],
+        ..Parameters::new(0.4, 0.2)
+    };
+    let refusal = refused(&square, closed, FaultKind::Ends);
+    assert!(matches!(refusal.advice, Advice::Boundary), "{refusal}");
+    let pinned = Pinned {
+        models: Some(ModelName::AUTO.to_vec()),
+        ..Pinned::default()
+    };
+    assert_eq!(verified(&square, pinned), [1, 0, 0]);
+}
+
+#[test]
+fn noise_is_told_and_a_larger_separation_does() {
+    let random = &mut Random::new(4);
+    let mut rows = Vec::new();
+    for p in sample("sphere", 1500).iter() {
+        let far = 1.0 + 0.05 * random.normal();
+        rows.extend(p.iter().map(|x| far * x));
+    }
+    let cloud = PointCloud::new(3, rows).unwrap();
+    let refusal = refused(&cloud, auto(0.3, 0.15), FaultKind::Noise);
+    let Advice::LessNoise { dl } = refusal.advice else {
+        panic!("{refusal}")
+    };
+    let pinned = Pinned {
+        dl: Some(1.5 * dl.unwrap_or(0.15)),
+        ..Pinned::default()
+    };
+    assert_eq!(verified(&cloud, pinned), [1, 0, 1]);
+}
+
+#[test]
+fn a_point_by_itself_is_told_and_without_it_the_mesh_is_verified() {
+    let mut rows = sample("sphere", 1500).coordinates().to_vec();
+    rows.extend([1.35, 0.0, 0.0]);
+    let cloud = PointCloud::new(3, rows).unwrap();
+    let refusal = refused(&cloud, auto(0.5, 0.25), FaultKind::Outliers);
+    let Advice::LeaveOut { rows } = &refusal.advice else {
+        panic!("{refusal}")
+    };
+    assert_eq!(rows, &[1500]);
+    let kept: Vec<usize> = (0..cloud.len()).filter(|row| !rows.contains(row)).collect();
+    let outcome = run(&cloud.select(&kept), auto(0.5, 0.25)).unwrap();
+    assert!(outcome.is_verified());
+    let prepared = Pinned {
+        eps: Some(0.5),
+        dl: Some(0.25),
+        prepare: Some(true),
+        ..Pinned::default()
+    };
+    assert_eq!(verified(&cloud, prepared), [1, 0, 1]);
+}
+
+#[test]
+fn neighborhoods_of_too_few_points_are_told_how_many_would_do() {
+    let refusal = refused(
+        &sample("sphere", 500),
+        auto(0.2, 0.14),
+        FaultKind::TooFewPoints,
+    );
+    let Advice::MorePoints(count) = refusal.advice else {
+        panic!("{refusal}")
+    };
+    assert!((1000..6000).contains(&count), "{count}");
+    let pinned = Pinned {
+        eps: Some(0.2),
+        ..Pinned::default()
+    };
+    assert_eq!(verified(&sample("sphere", count), pinned), [1, 0, 1]);
+}
+
+#[test]
+fn a_crossing_that_no_asked_model_claims_is_claimed_by_all_together() {
+    let cloud = sample("two_squares", 4000);
+    let pinned = Pinned {
+        eps: Some(0.3),
+        dl: Some(0.15),
+        models: Some(vec![ModelName::Boundary]),
+        ..Pinned::default()
+    };
+    let search = Auto::new(pinned.clone()).reconstruct(&cloud).unwrap();
+    let refusal = search.into_verified(Some(&cloud)).unwrap_err();
+    assert!(matches!(refusal.advice, Advice::AllModels), "{refusal}");
+    let all = Pinned {
+        models: Some(ModelName::AUTO.to_vec()),
+        ..pinned
+    };
+    assert_eq!(verified(&cloud, all), [1, 0, 0]);
+}
