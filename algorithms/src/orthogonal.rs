@@ -1,4 +1,10 @@
-//! Steps of Gram-Schmidt orthogonalization.
+//! Inner products of vectors that are slices of coordinates, and steps of Gram-Schmidt orthogonalization.
+
+/// Inner product, added up in the order of the coordinates.
+#[inline]
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
 
 /// Makes vector `k` of `vectors`, which are `width` long each, a unit vector across those before it, which are
 /// such already: Gram-Schmidt, so many `passes` (a second one takes away what rounding left of a vector that was nearly

@@ -21,6 +21,7 @@ pub use attempt::{Attempt, End, Topology};
 pub use density::Density;
 pub use input::Input;
 pub use moves::Move;
+pub(crate) use moves::{CLOSEST, ROOMY};
 pub use pinned::Pinned;
 pub use rounded::Rounded;
 pub use search::{Choice, Doubt, Search};

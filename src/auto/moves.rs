@@ -46,7 +46,7 @@ const LOCAL: usize = 30;
 const LARGER: f64 = 1.3;
 const SMALLER: f64 = 0.8;
 /// Part of the separation that the gaps of the points ask for that is taken: landmarks lie as chance has it.
-const ROOMY: f64 = 0.95;
+pub(crate) const ROOMY: f64 = 0.95;
 /// Factor on the separation alone.
 const FINER: f64 = 0.75;
 /// Spacings of one point in a hundred that are this many times those of another one vary more than one separation
@@ -54,7 +54,7 @@ const FINER: f64 = 0.75;
 /// surfaces with densities of 30 to 1 (5 times the spacing) all passed with one separation, of 100 to 1 none.
 const UNEVEN: f64 = 4.0;
 /// Landmarks are at least so many spacings apart: below that a landmark has no points around it.
-const CLOSEST: f64 = 1.3;
+pub(crate) const CLOSEST: f64 = 1.3;
 
 impl Move {
     /// Why it is tried, in a few words.

@@ -19,8 +19,8 @@ pub(super) struct Prepared<'a> {
     given: Input<'a>,
     /// The points that are worked on instead, where something was done about them.
     better: Option<Better>,
-    /// Whether points may be left out.
-    may_leave_out: bool,
+    /// Where points may be left out: what decides about them.
+    tuning: Option<PreparationTuning>,
 }
 
 #[derive(Clone)]
@@ -41,7 +41,7 @@ impl<'a> Prepared<'a> {
         Self {
             given,
             better: None,
-            may_leave_out: false,
+            tuning: None,
         }
     }
 
@@ -75,7 +75,7 @@ impl<'a> Prepared<'a> {
         Ok(Self {
             given,
             better,
-            may_leave_out: true,
+            tuning: Some(tuning.clone()),
         })
     }
 
@@ -103,35 +103,25 @@ impl<'a> Prepared<'a> {
                 None => self.given.run(&mut make(parameters.clone())?),
                 Some(better) => better.run(parameters, make)?,
             };
-            let alone = match (&outcome, self.given) {
-                (Ok(outcome), Input::Points(given)) if self.may_leave_out && rounds < ROUNDS => {
-                    let rows = better.as_ref().map(|better| &better.rows[..]);
-                    alone::rows(outcome, given, rows)
+            if let (Ok(found), Input::Points(given), Some(tuning)) =
+                (&outcome, self.given, &self.tuning)
+                && rounds < ROUNDS
+            {
+                let kept = better.as_ref().map(|better| &better.rows[..]);
+                let alone = alone::rows(found, given, kept);
+                if !alone.is_empty() {
+                    let before = match better {
+                        Some(better) => better,
+                        None => Better::unchanged(given, tuning)?,
+                    };
+                    better = Some(before.without(&alone));
+                    rounds += 1;
+                    continue;
                 }
-                _ => Vec::new(),
-            };
-            if alone.is_empty() {
-                let summary = better.map(|better| better.summary);
-                return Ok(Made { outcome, summary });
             }
-            better = Some(self.without(better, &alone)?);
-            rounds += 1;
+            let summary = better.map(|better| better.summary);
+            return Ok(Made { outcome, summary });
         }
-    }
-
-    /// The points that are worked on, without some rows of the input.
-    fn without(&self, better: Option<Better>, rows: &[usize]) -> Result<Better, Error> {
-        let better = match (better, self.given) {
-            (None, Input::Points(given)) => Better::unchanged(given)?,
-            (Some(better), _) => better,
-            (None, Input::Distances(_)) => {
-                return Err(Error::Shape {
-                    found: "distances alone".into(),
-                    expected: "points".into(),
-                });
-            }
-        };
-        Ok(better.without(rows))
     }
 }
 
@@ -144,11 +134,10 @@ pub(super) struct Made {
 
 impl Better {
     /// The different points as they are.
-    fn unchanged(given: &PointCloud<f64>) -> Result<Self, Error> {
+    fn unchanged(given: &PointCloud<f64>, tuning: &PreparationTuning) -> Result<Self, Error> {
         let rows = distinct_rows(given);
         let cloud = given.select(&rows);
-        let tuning = PreparationTuning::MEASURED;
-        let found = Preparation::of(&cloud, Remedies::NONE, &tuning, &Threads::new(1)?)?;
+        let found = Preparation::of(&cloud, Remedies::NONE, tuning, &Threads::new(1)?)?;
         Ok(Self {
             unmoved: cloud.clone(),
             cloud,

@@ -2,7 +2,7 @@
 
 use super::fault::Fault;
 use super::kind::FaultKind;
-use crate::auto::Topology;
+use crate::auto::{CLOSEST, ROOMY, Topology};
 use crate::pipeline::{Outcome, Parameters};
 use crosscap_algorithms::singularity::ModelName;
 use crosscap_core::Error;
@@ -47,10 +47,6 @@ pub enum Advice {
     MoreTries,
 }
 
-/// Part of the separation that would do at most: landmarks lie as chance has it.
-const ROOMY: f64 = 0.9;
-/// Landmarks are at least so many spacings of the points apart.
-const CLOSEST: f64 = 1.3;
 /// How many times as many points are asked for at least.
 const LEAST_INCREASE: f64 = 1.5;
 

@@ -1,6 +1,7 @@
 //! Triangles of R^N that lie on top of each other.
 
 use super::triangle::corners;
+use crate::orthogonal::dot;
 use crosscap_core::Mesh;
 
 /// Every triangle's plane, as two orthonormal directions.
@@ -10,10 +11,6 @@ pub(super) struct Planes<'a> {
     directions: Vec<f64>,
     /// N numbers a triangle.
     centroids: Vec<f64>,
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl<'a> Planes<'a> {

@@ -2,12 +2,13 @@
 
 use super::gluing::{FREE, Gluing};
 use super::normalization::Normalization;
-use super::straightness::{self, Rims, dot, unit};
+use super::straightness::{self, Rims, unit};
 use super::{
     BareCurve, CrossingAngle, CurveEnd, CurveMeeting, DoubleCurve, Junction, MultiplePoint,
     PointContact, Preimage, Sidedness,
 };
 use crate::homology::signed_union::{Joined, SignedUnion};
+use crate::orthogonal::dot;
 use crosscap_core::{Mesh, squared_distance};
 
 /// A link from one end of an edge to an end of another: the number of the edge in its list and

@@ -5,6 +5,7 @@ use super::{Piece, PiecesError, Surface, straightness};
 use crate::homology::bare_edges;
 use crate::homology::sides::runs_backward;
 use crate::homology::signed_union::{Joined, SignedUnion};
+use crate::orthogonal::dot;
 use crosscap_core::{Complex, CurveEdge, Mesh};
 
 /// Local sheets and pieces of a glued surface.
@@ -198,7 +199,7 @@ fn area(mesh: &Mesh, t: usize) -> f64 {
         return 0.0;
     };
     let mut height = to(c);
-    let forward = straightness::dot(&height, &base);
+    let forward = dot(&height, &base);
     height
         .iter_mut()
         .zip(&base)

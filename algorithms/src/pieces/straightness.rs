@@ -1,5 +1,6 @@
 //! Which of four half planes at an edge continue each other.
 
+use crate::orthogonal::dot;
 use crosscap_core::Mesh;
 
 /// By how much the best pairing of the four triangles along a double curve must be straighter
@@ -55,10 +56,6 @@ pub(super) fn leaving(mesh: &Mesh, ends: [u32; 2], sides: &[u32]) -> Option<(f64
     };
     let directions: Option<Vec<Vec<f64>>> = sides.iter().map(leave).collect();
     Some((length, directions?))
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 fn norm(a: &[f64]) -> f64 {

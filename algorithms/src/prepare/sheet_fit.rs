@@ -1,5 +1,6 @@
 //! A sheet through points of R^N: quadratic heights over their principal plane.
 
+use crate::orthogonal::dot;
 use nalgebra::{SMatrix, SVector};
 
 /// Coefficients of a quadratic height: 1, a, b, a^2, a b, b^2.
@@ -30,10 +31,6 @@ pub(super) struct SheetFit {
     extent: f64,
     centered: Vec<f64>,
     next: [Vec<f64>; 2],
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 fn subtract(from: &mut [f64], factor: f64, what: &[f64]) {

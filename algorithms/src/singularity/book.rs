@@ -1,6 +1,5 @@
 //! Any number of sheets that meet in one curve.
 
-use super::curve_end;
 use super::page_sheets::PageSheets;
 use super::patch::PATCH_POINTS;
 use super::plane_pair::PlanePair;
@@ -83,10 +82,7 @@ impl Book {
             };
             !known && aside.norm() <= tuning.off_center * radius
         })?;
-        let off: Vec<f64> = points.iter().map(|x| book.off(x)).collect();
-        let sum = off.iter().map(|d| d * d).sum();
-        let residual = self.tolerance.residual(sum, points.len())?;
-        curve_end::follows(off.into_iter(), residual, self.tolerance.ep, &tuning.end)?;
+        let residual = book.residual(points, &self.tolerance, &tuning.end)?;
         book.are_held(points, tuning.share)?;
         Ok(Fit {
             all,
@@ -203,6 +199,7 @@ impl SingularityModel for Book {
 
 #[cfg(test)]
 mod tests {
+    use super::super::about_first;
     use super::*;
     use std::f64::consts::{PI, TAU};
 
@@ -222,13 +219,9 @@ mod tests {
     }
 
     fn decompose(coordinates: &[f64]) -> Result<Decomposition, Rejection> {
-        Book::new(0.2, 0.1).unwrap().decompose(&LocalPoints {
-            dimension: 3,
-            coordinates,
-            fitted: coordinates.len() / 3,
-            center: 0,
-            radius: RADIUS,
-        })
+        Book::new(0.2, 0.1)
+            .unwrap()
+            .decompose(&about_first(coordinates, RADIUS))
     }
 
     #[test]

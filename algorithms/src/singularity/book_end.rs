@@ -69,7 +69,8 @@ impl BookEnd {
     ) -> Result<Fit, Rejection> {
         let (points, radius, ep) = (&all[..local.fitted], local.radius, self.tolerance.ep);
         let (center, tuning) = (all[local.center], &self.tuning);
-        let residual = self.follow(&book, points, radius)?;
+        let residual = book.residual(points, &self.tolerance, &tuning.end)?;
+        curve_end::gains(residual, points, radius, &tuning.end)?;
         book.are_held(points, tuning.share)?;
         let meet = |x| {
             book.meet(x, tuning.step * radius)
@@ -112,22 +113,6 @@ impl BookEnd {
             reach: tuning.step * radius,
             witness: tuning.end.witness,
         })
-    }
-
-    /// The residual of the sheets, which the points follow, better than one.
-    fn follow(
-        &self,
-        book: &PageSheets,
-        points: &[Vector3<f64>],
-        radius: f64,
-    ) -> Result<f64, Rejection> {
-        let off: Vec<f64> = points.iter().map(|x| book.off(x)).collect();
-        let sum = off.iter().map(|d| d * d).sum();
-        let residual = self.tolerance.residual(sum, points.len())?;
-        curve_end::gains(residual, points, radius, &self.tuning.end)?;
-        let ep = self.tolerance.ep;
-        curve_end::follows(off.into_iter(), residual, ep, &self.tuning.end)?;
-        Ok(residual)
     }
 }
 
@@ -344,6 +329,7 @@ impl SingularityModel for BookEnd {
 
 #[cfg(test)]
 mod tests {
+    use super::super::about_first;
     use super::*;
     use crosscap_core::{Label, LinkKind};
     use std::f64::consts::{PI, TAU};
@@ -373,13 +359,7 @@ mod tests {
     }
 
     fn decompose(coordinates: &[f64]) -> Result<Decomposition, Rejection> {
-        model().decompose(&LocalPoints {
-            dimension: 3,
-            coordinates,
-            fitted: coordinates.len() / 3,
-            center: 0,
-            radius: RADIUS,
-        })
+        model().decompose(&about_first(coordinates, RADIUS))
     }
 
     fn model() -> BookEnd {

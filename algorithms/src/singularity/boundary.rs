@@ -254,6 +254,7 @@ impl SingularityModel for Boundary {
 
 #[cfg(test)]
 mod tests {
+    use super::super::about_first;
     use super::*;
 
     fn decompose(points: &[[f64; 3]]) -> Result<Decomposition, Rejection> {
@@ -263,13 +264,9 @@ mod tests {
             .iter()
             .flat_map(|x| [0, 1, 2].map(|i| x[i] - mean[i]))
             .collect();
-        Boundary::new(0.2, 0.1).unwrap().decompose(&LocalPoints {
-            dimension: 3,
-            coordinates: &coordinates,
-            fitted: points.len(),
-            center: 0,
-            radius: 1.0,
-        })
+        Boundary::new(0.2, 0.1)
+            .unwrap()
+            .decompose(&about_first(&coordinates, 1.0))
     }
 
     fn spiral(count: usize, radius: f64) -> impl Iterator<Item = [f64; 2]> {

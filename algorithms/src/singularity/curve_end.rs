@@ -1,4 +1,4 @@
-//! What the models of the ends of double curves have in common: when they are believed, and what they say of rows.
+//! What models of the ends of curves have in common: when they are believed, and what they say of rows. Books are believed so, too.
 
 use super::patch::off_one_sheet;
 use crate::tuning::CurveEndTuning;
@@ -36,7 +36,7 @@ pub(super) fn follows(
     }
 }
 
-/// A neighborhood of the end of a double curve, with what was fitted to it.
+/// A neighborhood of the end of a curve, with what was fitted to it.
 pub(super) trait CurveEnd {
     /// Dimension of the stratum of every label.
     fn strata(&self) -> &[u8];

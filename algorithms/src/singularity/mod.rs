@@ -40,3 +40,15 @@ pub use regular::OneSheet;
 pub use triple_point::TriplePoint;
 pub use two_planes::TwoPlanes;
 pub use y_junction::YJunction;
+
+/// Points of R^3 about the first of them, all of them fitted.
+#[cfg(test)]
+fn about_first(coordinates: &[f64], radius: f64) -> crosscap_core::LocalPoints<'_> {
+    crosscap_core::LocalPoints {
+        dimension: 3,
+        coordinates,
+        fitted: coordinates.len() / 3,
+        center: 0,
+        radius,
+    }
+}

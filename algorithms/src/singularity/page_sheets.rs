@@ -1,9 +1,12 @@
 //! The sheets of pages that meet in a curve: a quadratic patch for every page, or for two that are one sheet.
 
+use super::curve_end;
 use super::flats::Flat;
 use super::pages::Pages;
 use super::plane_pair::PlanePair;
 use super::sheets::Sheets;
+use super::tolerance::Tolerance;
+use crate::tuning::CurveEndTuning;
 use crosscap_core::Rejection;
 use nalgebra::Vector3;
 
@@ -73,6 +76,7 @@ impl PageSheets {
         }
     }
 
+    /// Patches over pages about the line that these have.
     fn laid(pages: Pages, all: &[Vector3<f64>], fitted: usize, radius: f64) -> Self {
         let parts = parts(&pages);
         let planes: Vec<Flat<3>> = (parts.iter())
@@ -150,11 +154,28 @@ impl PageSheets {
 
     /// Distance of a point from the nearest sheet: those about the curve can have been given to another before its place was known
     /// exactly.
-    pub(super) fn off(&self, x: &Vector3<f64>) -> f64 {
+    fn off(&self, x: &Vector3<f64>) -> f64 {
         let patches = self.sheets.patches.iter().zip(&self.of);
         patches
             .map(|(patch, sheet)| off(&self.pages, &sheet.pages, patch.signed_distance(x), x))
             .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Root mean squared distance of the points from the sheets, where they follow them.
+    ///
+    /// # Errors
+    /// [`Rejection::PoorFit`].
+    pub(super) fn residual(
+        &self,
+        points: &[Vector3<f64>],
+        tolerance: &Tolerance,
+        tuning: &CurveEndTuning,
+    ) -> Result<f64, Rejection> {
+        let off: Vec<f64> = points.iter().map(|x| self.off(x)).collect();
+        let sum = off.iter().map(|d| d * d).sum();
+        let residual = tolerance.residual(sum, points.len())?;
+        curve_end::follows(off.into_iter(), residual, tolerance.ep, tuning)?;
+        Ok(residual)
     }
 
     /// Page of the point of a row.

@@ -226,6 +226,7 @@ impl SingularityModel for PinchPoint {
 
 #[cfg(test)]
 mod tests {
+    use super::super::about_first;
     use super::*;
 
     const RADIUS: f64 = 0.8;
@@ -242,13 +243,9 @@ mod tests {
     }
 
     fn decompose(coordinates: &[f64]) -> Result<Decomposition, Rejection> {
-        PinchPoint::new(0.1, 0.05).unwrap().decompose(&LocalPoints {
-            dimension: 3,
-            coordinates,
-            fitted: coordinates.len() / 3,
-            center: 0,
-            radius: RADIUS,
-        })
+        PinchPoint::new(0.1, 0.05)
+            .unwrap()
+            .decompose(&about_first(coordinates, RADIUS))
     }
 
     #[test]
@@ -299,13 +296,9 @@ mod tests {
             .flatten()
             .copied()
             .collect();
-        let found = PinchPoint::new(0.1, 0.05).unwrap().decompose(&LocalPoints {
-            dimension: 3,
-            coordinates: &small,
-            fitted: small.len() / 3,
-            center: 0,
-            radius: 0.4,
-        });
+        let found = PinchPoint::new(0.1, 0.05)
+            .unwrap()
+            .decompose(&about_first(&small, 0.4));
         let Err(Rejection::NeighborhoodTooSmall { needed }) = found else {
             panic!("{found:?}");
         };

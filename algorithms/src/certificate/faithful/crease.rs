@@ -1,7 +1,8 @@
 //! Heights that a crease explains: two sheets that meet along a line, and not one over the other.
 
-/// Coefficients of a quadratic height: 1, u, v, uu, uv, vv.
-const TERMS: usize = 6;
+use super::patch::{TERMS, terms};
+use crate::orthogonal::{dot, unit_across};
+
 /// Directions that a crease is tried in, and places in each.
 const DIRECTIONS: usize = 24;
 const PLACES: usize = 15;
@@ -21,7 +22,7 @@ pub(super) fn explains(flat: &[[f64; 2]], left: &[f64]) -> bool {
         return false;
     }
     let flat: Vec<[f64; 2]> = flat.iter().map(|p| p.map(|x| x / scale)).collect();
-    let terms = quadratic(&flat);
+    let quadratic = quadratic(&flat);
     let mut most = 0.0_f64;
     let mut sorted = Vec::with_capacity(flat.len());
     for k in 0..DIRECTIONS {
@@ -33,7 +34,7 @@ pub(super) fn explains(flat: &[[f64; 2]], left: &[f64]) -> bool {
             let line = sorted[place * (sorted.len() - 1) / (PLACES + 1)];
             let mut fold: Vec<f64> = along.iter().map(|w| (w - line).abs()).collect();
             let before = dot(&fold, &fold);
-            terms.iter().for_each(|term| take_off(&mut fold, term));
+            (quadratic.chunks_exact(flat.len())).for_each(|term| take_off(&mut fold, term));
             let square = dot(&fold, &fold);
             if square > 1e-9 * before {
                 most = most.max(dot(&fold, left).powi(2) / square);
@@ -43,32 +44,24 @@ pub(super) fn explains(flat: &[[f64; 2]], left: &[f64]) -> bool {
     all - most < LEAVES * LEAVES * all
 }
 
-/// The quadratic terms at the points, orthonormal; fewer where they depend on each other.
-fn quadratic(flat: &[[f64; 2]]) -> Vec<Vec<f64>> {
-    let mut terms: Vec<Vec<f64>> = Vec::with_capacity(TERMS);
+/// The quadratic terms at the points, orthonormal, one after the other; fewer where they depend on each other.
+fn quadratic(flat: &[[f64; 2]]) -> Vec<f64> {
+    let count = flat.len();
+    let mut found: Vec<f64> = Vec::with_capacity(TERMS * count);
     for i in 0..TERMS {
-        let mut term: Vec<f64> = (flat.iter())
-            .map(|&[u, v]| [1.0, u, v, u * u, u * v, v * v][i])
-            .collect();
-        let before = dot(&term, &term);
-        terms.iter().for_each(|other| take_off(&mut term, other));
-        let square = dot(&term, &term);
-        if square > 1e-12 * before {
-            term.iter_mut().for_each(|x| *x /= square.sqrt());
-            terms.push(term);
+        let before = found.len();
+        found.extend(flat.iter().map(|&place| terms(place)[i]));
+        if !unit_across(&mut found, count, before / count, 1, 1e-12) {
+            found.truncate(before);
         }
     }
-    terms
+    found
 }
 
 /// Takes off the part of `x` along a vector of length one.
 fn take_off(x: &mut [f64], unit: &[f64]) {
     let along = dot(x, unit);
     x.iter_mut().zip(unit).for_each(|(x, u)| *x -= along * u);
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
@@ -82,8 +75,8 @@ mod tests {
         let place = |_| [random.between(-4.0, 4.0), random.between(-4.0, 4.0)];
         let flat: Vec<[f64; 2]> = (0..60).map(place).collect();
         let mut left: Vec<f64> = flat.iter().map(|&p| height(&mut random, p)).collect();
-        for term in quadratic(&flat) {
-            take_off(&mut left, &term);
+        for term in quadratic(&flat).chunks_exact(flat.len()) {
+            take_off(&mut left, term);
         }
         (flat, left)
     }

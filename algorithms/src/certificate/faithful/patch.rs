@@ -2,8 +2,14 @@
 
 use crosscap_core::squared_distance;
 
-/// Coefficients of a quadratic height: 1, u, v, uu, uv, vv.
-const TERMS: usize = 6;
+/// Terms of a quadratic height.
+pub(super) const TERMS: usize = 6;
+
+/// The terms of a quadratic height at a place.
+pub(super) fn terms([u, v]: [f64; 2]) -> [f64; TERMS] {
+    [1.0, u, v, u * u, u * v, v * v]
+}
+
 /// Points that a patch is fitted to at most: picked at equal steps.
 const FITTED: usize = 96;
 /// Rounds of the power iteration for its plane; a surface is flat beside its neighborhood, so that few are enough.
@@ -131,10 +137,7 @@ impl Patch {
         if scale <= 0.0 {
             return false;
         }
-        let terms = |p: &[f64; 2]| {
-            let (u, v) = (p[0] / scale, p[1] / scale);
-            [1.0, u, v, u * u, u * v, v * v]
-        };
+        let terms = |p: &[f64; 2]| terms(p.map(|x| x / scale));
         let mut normal = [[0.0; TERMS]; TERMS];
         let mut right = vec![[0.0; TERMS]; n + 1];
         for (p, h) in self.flat.iter().zip(self.heights.chunks_exact(n)) {

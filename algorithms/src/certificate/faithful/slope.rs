@@ -8,6 +8,7 @@ use super::search::Search;
 use super::tiles::{Cut, Shape, TILE};
 use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
+use crate::orthogonal::unit_across;
 
 /// Points around a region that its density is fitted to, the nearest ones: more are where the slope is another.
 const NEAREST: usize = 64;
@@ -65,7 +66,7 @@ impl Search<'_> {
     /// The points that are expected in a hole, from the nearest ones around it; none where there are too few.
     pub(super) fn expected_in(&self, hole: &Hole<'_>) -> Option<Expected> {
         let (region, feet, reach) = self.nearest_around(hole)?;
-        let plane = Plane::of(corners(self.mesh, *hole.triangles.first()?), reach);
+        let plane = Plane::of(corners(self.mesh, *hole.triangles.first()?), reach)?;
         let mut flat = Flat {
             points: feet.iter().map(|&k| plane.at(self.feet.place(k))).collect(),
             ..Flat::default()
@@ -135,35 +136,33 @@ impl Search<'_> {
 /// The plane of a triangle, in units of a length.
 struct Plane {
     origin: Vec<f64>,
-    axes: [Vec<f64>; 2],
+    /// Both directions, one after the other.
+    axes: Vec<f64>,
 }
 
 impl Plane {
-    fn of([a, b, c]: [&[f64]; 3], unit: f64) -> Self {
-        let minus = |x: &[f64]| -> Vec<f64> { x.iter().zip(a).map(|(x, a)| x - a).collect() };
-        let dot = |x: &[f64], y: &[f64]| -> f64 { x.iter().zip(y).map(|(x, y)| x * y).sum() };
-        let scaled = |mut x: Vec<f64>| {
-            let size = dot(&x, &x).sqrt();
-            x.iter_mut().for_each(|x| *x /= size);
-            x
-        };
-        let first = scaled(minus(b));
-        let mut second = minus(c);
-        let along = dot(&second, &first);
-        (second.iter_mut().zip(&first)).for_each(|(x, f)| *x -= along * f);
-        let second = scaled(second);
-        Self {
-            origin: a.to_vec(),
-            axes: [first, second].map(|axis| axis.into_iter().map(|x| x / unit).collect()),
+    /// `None` for a triangle whose corners are on a line.
+    fn of([a, b, c]: [&[f64]; 3], unit: f64) -> Option<Self> {
+        let width = a.len();
+        let from = a.iter().cycle();
+        let mut axes: Vec<f64> = (b.iter().chain(c)).zip(from).map(|(x, a)| x - a).collect();
+        let mut is_across = |k| unit_across(&mut axes, width, k, 1, 1e-18);
+        if !(is_across(0) && is_across(1)) {
+            return None;
         }
+        axes.iter_mut().for_each(|x| *x /= unit);
+        Some(Self {
+            origin: a.to_vec(),
+            axes,
+        })
     }
 
     fn at(&self, place: &[f64]) -> [f64; 2] {
-        let from = place.iter().zip(&self.origin).map(|(x, o)| x - o);
+        let (first, second) = self.axes.split_at(self.origin.len());
         let mut found = [0.0; 2];
-        for (k, x) in from.enumerate() {
-            found[0] += x * self.axes[0][k];
-            found[1] += x * self.axes[1][k];
+        for (k, (x, o)) in place.iter().zip(&self.origin).enumerate() {
+            found[0] += (x - o) * first[k];
+            found[1] += (x - o) * second[k];
         }
         found
     }

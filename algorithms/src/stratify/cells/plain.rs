@@ -2,7 +2,7 @@
 //! together, and no flood is needed.
 
 use crate::balls::BallTree;
-use crate::orthogonal::unit_across;
+use crate::orthogonal::{dot, unit_across};
 use crosscap_core::Landmark;
 use nalgebra::{SMatrix, SVector};
 
@@ -146,10 +146,6 @@ impl Scratch {
                 square <= limit
             })
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 /// Two orthonormal directions near those in which the offsets extend most, one after the other in

@@ -3,6 +3,7 @@
 use super::chart::{COVER, Chart, Scratch, squared_distance};
 use super::conformations::RingConformations;
 use super::error::RingError;
+use crate::orthogonal::dot;
 use crate::surfaces::Random;
 use nalgebra::DMatrix;
 use std::collections::HashMap;
@@ -170,7 +171,7 @@ impl Net {
     }
 
     fn shadow(&self, place: &[f64]) -> [f64; 3] {
-        [0, 1, 2].map(|k| super::chart::dot(&self.axes[k], place))
+        [0, 1, 2].map(|k| dot(&self.axes[k], place))
     }
 
     fn cell(&self, shadow: [f64; 3]) -> [i64; 3] {
@@ -204,7 +205,7 @@ impl Net {
         let reach = 1.5 * self.separation;
         let agrees = |a: &Chart, b: &Chart| {
             a.tangent.iter().all(|t| {
-                let along = |w: &Vec<f64>| super::chart::dot(w, t).powi(2);
+                let along = |w: &Vec<f64>| dot(w, t).powi(2);
                 b.tangent.iter().map(along).sum::<f64>() > 0.8
             })
         };

@@ -239,7 +239,7 @@ fn larger_piece_is_one_sided_and_smaller_one_is_not() {
                 }
                 let [a, b] = &net.charts[k].tangent;
                 let [c, d] = &net.charts[o].tangent;
-                let dot = chart::dot;
+                let dot = crate::orthogonal::dot;
                 let turn = (dot(a, c) * dot(b, d) - dot(a, d) * dot(b, c)).signum() * sign[k];
                 if sign[o] == 0.0 {
                     sign[o] = turn;
