@@ -27,5 +27,6 @@ pub mod space;
 mod spectrum;
 pub mod stratify;
 pub mod surfaces;
+pub mod tiles;
 pub mod triangulate;
 pub mod tuning;

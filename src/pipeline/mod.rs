@@ -8,6 +8,8 @@ mod progress;
 mod report;
 mod rows;
 mod run;
+mod tiled;
+mod whole;
 
 pub use parameters::{Method, Parameters};
 pub(crate) use prepared::Input;

@@ -80,12 +80,30 @@ impl<S: Scalar> WholeCloud<'_, S> {
         &self,
         estimator: &dyn DimensionEstimator<Scalar = S>,
     ) -> Result<Vec<Option<DimensionEstimate>>, Error> {
+        let all: Vec<usize> = (0..self.len()).collect();
+        match self.local_at(estimator, &all)? {
+            (answers, Some(sparse)) if answers.iter().all(Option::is_none) => Err(sparse),
+            (answers, _) => Ok(answers),
+        }
+    }
+
+    /// The dimension at some points, in their order, as [`local`](Self::local) says, and of those without an answer the reason
+    /// of the first.
+    ///
+    /// # Errors
+    /// The first error that is not [`Error::SparseNeighborhood`].
+    pub fn local_at(
+        &self,
+        estimator: &dyn DimensionEstimator<Scalar = S>,
+        centers: &[usize],
+    ) -> Result<(Vec<Option<DimensionEstimate>>, Option<Error>), Error> {
         self.scale.check()?;
         let radius = match self.scale {
             Scale::Nearest(_) => f64::INFINITY,
             Scale::Within(r) => r,
         };
-        let found = execute::map(self.execute, self.len(), Vec::new, |near, center| {
+        let found = execute::map(self.execute, centers.len(), Vec::new, |near, k| {
+            let center = centers[k];
             self.neighborhood(center, near);
             estimator.estimate(&Neighborhood {
                 center,
@@ -107,10 +125,7 @@ impl<S: Scalar> WholeCloud<'_, S> {
                 Err(error) => return Err(error),
             });
         }
-        match sparse {
-            Some(error) if answers.iter().all(Option::is_none) => Err(error),
-            _ => Ok(answers),
-        }
+        Ok((answers, sparse))
     }
 
     /// Writes the neighborhood of `i` at the scale into `out`, nearest first, `i` among them.

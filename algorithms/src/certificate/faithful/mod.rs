@@ -14,7 +14,7 @@ mod evenness;
 pub(super) mod footprints;
 mod gaps;
 pub(super) mod ground;
-mod opening;
+pub(super) mod opening;
 mod overlay;
 mod patch;
 mod rim;
