@@ -123,8 +123,10 @@ pub fn tile_dimension<'py>(
             scale: Scale::Within(eps),
             execute: &Serial,
         };
-        let answers = space.local_at(estimator.as_ref(), &own)?;
-        Ok((own, answers.0))
+        let wanted = |row: usize| bounds.hold(cloud.point(row));
+        let (answers, _) = space.local_where(estimator.as_ref(), &wanted)?;
+        let found: Vec<_> = own.iter().map(|&row| answers[row].clone()).collect();
+        Ok((own, found))
     });
     let (own, found) = found.map_err(|error: Error| raised(py, error))?;
     let all = arrays::of_estimates(py, &found)?;

@@ -1,7 +1,8 @@
 //! The dimension of a whole cloud.
 
 use super::decision::{confidence, decide};
-use crate::execute::{self, Execute};
+use crate::execute::Execute;
+use crate::locality;
 use crosscap_core::{
     DimensionEstimate, DimensionEstimator, Error, MetricSpace, Neighbor, Neighborhood,
     NeighborhoodOracle, PointCloud, Scalar,
@@ -66,6 +67,15 @@ impl<S: Scalar> WholeCloud<'_, S> {
         self.oracle.len()
     }
 
+    /// What `work` makes of every point, by row, with a workspace for each thread.
+    pub(super) fn map<T: Send + Sync, C>(
+        &self,
+        scratch: impl Fn() -> C + Sync,
+        work: impl Fn(&mut C, usize) -> T + Sync,
+    ) -> Vec<T> {
+        locality::map(self.execute, self.cloud, self.oracle.len(), scratch, work)
+    }
+
     /// Whether there is no point.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -80,44 +90,45 @@ impl<S: Scalar> WholeCloud<'_, S> {
         &self,
         estimator: &dyn DimensionEstimator<Scalar = S>,
     ) -> Result<Vec<Option<DimensionEstimate>>, Error> {
-        let all: Vec<usize> = (0..self.len()).collect();
-        match self.local_at(estimator, &all)? {
+        match self.local_where(estimator, &|_| true)? {
             (answers, Some(sparse)) if answers.iter().all(Option::is_none) => Err(sparse),
             (answers, _) => Ok(answers),
         }
     }
 
-    /// The dimension at some points, in their order, as [`local`](Self::local) says, and of those without an answer the reason
-    /// of the first.
+    /// The same at the points that are `wanted`, `None` at all others; and why the first that is wanted and has no answer has none.
     ///
     /// # Errors
     /// The first error that is not [`Error::SparseNeighborhood`].
-    pub fn local_at(
+    pub fn local_where(
         &self,
         estimator: &dyn DimensionEstimator<Scalar = S>,
-        centers: &[usize],
+        wanted: &(dyn Fn(usize) -> bool + Sync),
     ) -> Result<(Vec<Option<DimensionEstimate>>, Option<Error>), Error> {
         self.scale.check()?;
         let radius = match self.scale {
             Scale::Nearest(_) => f64::INFINITY,
             Scale::Within(r) => r,
         };
-        let found = execute::map(self.execute, centers.len(), Vec::new, |near, k| {
-            let center = centers[k];
+        let found = self.map(Vec::new, |near, center| {
+            if !wanted(center) {
+                return Ok(None);
+            }
             self.neighborhood(center, near);
-            estimator.estimate(&Neighborhood {
+            let neighborhood = Neighborhood {
                 center,
                 radius,
                 neighbors: near,
                 metric: self.metric,
                 cloud: self.cloud,
-            })
+            };
+            estimator.estimate(&neighborhood).map(Some)
         });
         let mut sparse = None;
         let mut answers = Vec::with_capacity(found.len());
         for answer in found {
             answers.push(match answer {
-                Ok(estimate) => Some(estimate),
+                Ok(estimate) => estimate,
                 Err(error @ Error::SparseNeighborhood { .. }) => {
                     sparse.get_or_insert(error);
                     None
