@@ -194,6 +194,12 @@ fn what_tiles_cannot_be_asked_about_is_refused() {
             ..
         })
     ));
+    let sphere = Parameters::new(0.6, 0.3).surface();
+    let mut pipeline = Pipeline::new(sphere).unwrap();
+    let narrow = 0.9 * pipeline.tile_halo();
+    let tiles = TilesInMemory::new(&cloud, &Tiling::new(&cloud, 3), narrow, 0, &Serial).unwrap();
+    let narrow = pipeline.reconstruct_tiles(&tiles);
+    assert!(matches!(narrow, Err(Error::Parameter { name: "halo", .. })));
     let boundary = Parameters {
         boundary: vec![1],
         ..Parameters::new(0.6, 0.3).surface()

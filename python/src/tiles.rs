@@ -11,7 +11,7 @@ use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::landmarks;
 use crosscap_algorithms::tiles::{Answer, CloudRow, Question, Tile, TileId, Tiles, Tiling};
 use crosscap_backends::euclidean::EuclideanOracle;
-use crosscap_core::{Error, PointCloud};
+use crosscap_core::Error;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};

@@ -16,6 +16,8 @@ _TILE_BYTES = 64 * 2**20
 def _cut(holder, points, halo, tiles, seed):
     """Has the holder make tiles of a cloud; returns the tiling. The seed is that of the ranks, if there is one."""
     count, firsts = points.count, points.firsts[:-1]
+    if count == 0:
+        raise ValueError("found no points")
     if count > np.iinfo(np.uint32).max:
         raise ValueError(f"found {count} points, expected fewer than 2^32")
     step = max(1, count // _SAMPLED)

@@ -118,8 +118,13 @@ def _read_map(path, kind, offset, shape, order, start, stop):
     return np.memmap(path, kind, "r", offset, shape, order)[start:stop]
 
 
+def _aligned(array, kind=None):
+    # What came over the network may begin anywhere in memory.
+    return np.require(array, kind, ["C", "A"])
+
+
 def _rows(points, first):
-    points = np.ascontiguousarray(points, dtype=np.float64)
+    points = _aligned(points, np.float64)
     wrong = np.argwhere(~np.isfinite(points))
     if len(wrong):
         row, column = wrong[0]
@@ -144,10 +149,10 @@ def joined(*pieces):
 
 
 def answer(tile, number, tiling, halo, question):
-    return _crosscap.tile_answer(tiling, number, halo, *tile, question)
+    return _crosscap.tile_answer(tiling, number, halo, *map(_aligned, tile), question)
 
 
 def dimension(tile, number, tiling, estimator, eps, dt):
     points, rows, _ = tile
-    found = _crosscap.tile_dimension(tiling, number, points, estimator, eps, dt)
+    found = _crosscap.tile_dimension(tiling, number, _aligned(points), estimator, eps, dt)
     return {**found, "rows": rows[found["own"]]}
