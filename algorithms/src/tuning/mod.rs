@@ -20,6 +20,7 @@ pub use pages::PagesTuning;
 
 pub use preparation::{
     NoiseTuning, OutlierTuning, PreparationTuning, ProjectionTuning, ResolutionTuning,
+    SubspaceTuning,
 };
 
 use serde::Serialize;
