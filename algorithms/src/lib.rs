@@ -28,5 +28,6 @@ pub mod space;
 mod spectrum;
 pub mod stratify;
 pub mod surfaces;
+pub mod tiles;
 pub mod triangulate;
 pub mod tuning;

@@ -88,6 +88,42 @@ fn steps(corners: [&[f64]; 3], separation: f64) -> usize {
     2 * (pieces.min(12.0) as usize).max(1)
 }
 
+/// Places inside an edge, as shares of the way.
+fn shares(pieces: usize) -> impl Iterator<Item = f64> {
+    (1..pieces).map(move |i| i as f64 / pieces as f64)
+}
+
+/// Places of a triangle, as weights of its corners, which are none of them; whether each is inside.
+fn weights(pieces: usize) -> impl Iterator<Item = ([f64; 3], bool)> {
+    let grid =
+        (0..=pieces).flat_map(move |i| (0..=pieces - i).map(move |j| [i, j, pieces - i - j]));
+    let weighed = grid.filter_map(move |steps| {
+        let zeros = steps.iter().filter(|&&x| x == 0).count();
+        (zeros < 2).then(|| (steps.map(|x| x as f64 / pieces as f64), zeros == 0))
+    });
+    std::iter::once(([1.0 / 3.0; 3], true)).chain(weighed)
+}
+
+/// The places of the mesh whose nearest points are asked for, one after the other, where the landmark separation is the
+/// same everywhere.
+pub(super) fn places(mesh: &Mesh, bare: &[[u32; 2]], separation: f64) -> Vec<f64> {
+    let mut all = mesh.vertices.coordinates().to_vec();
+    for &ends in bare {
+        let [p, q] = ends.map(|v| mesh.vertices.point(v as usize));
+        for t in shares(steps([p, q, q], separation)) {
+            all.extend(p.iter().zip(q).map(|(p, q)| p * (1.0 - t) + q * t));
+        }
+    }
+    for t in 0..mesh.complex.triangles.len() as u32 {
+        let c = corners(mesh, t);
+        for (w, _) in weights(steps(c, separation)) {
+            let place = (0..c[0].len()).map(|k| w[0] * c[0][k] + w[1] * c[1][k] + w[2] * c[2][k]);
+            all.extend(place);
+        }
+    }
+    all
+}
+
 pub(super) fn check(
     mesh: &Mesh,
     search: Option<&Search<'_>>,
@@ -197,9 +233,7 @@ pub(super) fn check(
             mesh.vertices.point(b as usize),
         );
         let dl = near(p);
-        let pieces = steps([p, q, q], dl);
-        for i in 1..pieces {
-            let t = i as f64 / pieces as f64;
+        for t in shares(steps([p, q, q], dl)) {
             for k in 0..n {
                 place[k] = p[k] * (1.0 - t) + q[k] * t;
             }
@@ -219,7 +253,7 @@ pub(super) fn check(
         let mut triangle_far = false;
         let mut triangle_off = 0.0_f64;
         let gap = search.gap_at(t);
-        let mut weigh = |weights: [f64; 3], inner: bool| {
+        for (weights, inner) in weights(pieces) {
             for k in 0..n {
                 place[k] = weights[0] * c[0][k] + weights[1] * c[1][k] + weights[2] * c[2][k];
             }
@@ -232,17 +266,6 @@ pub(super) fn check(
                     let height = off_plane(row, &place, c) / dl;
                     triangle_off = triangle_off.max(height);
                     off_values.push(height);
-                }
-            }
-        };
-        weigh([1.0 / 3.0; 3], true);
-        for i in 0..=pieces {
-            for j in 0..=pieces - i {
-                let k = pieces - i - j;
-                let zeros = [i, j, k].iter().filter(|&&x| x == 0).count();
-                if zeros < 2 {
-                    let m = pieces as f64;
-                    weigh([i as f64 / m, j as f64 / m, k as f64 / m], zeros == 0);
                 }
             }
         }

@@ -23,7 +23,7 @@ pub use preparation::{
     SubspaceTuning,
 };
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// All of them. [`Tuning::MEASURED`] is what the program runs with.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -207,7 +207,7 @@ impl SkeletonTuning {
 }
 
 /// What decides which landmarks are in the neighborhood of which. Shares are of dl unless said otherwise.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellTuning {
     /// Labels are believed up to this share of the radius of the fit.
     pub label_reach: f64,
