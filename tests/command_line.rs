@@ -1,6 +1,6 @@
 //! The built program, run as a user runs it.
 
-use crosscap_algorithms::surfaces::Random;
+use crosscap_algorithms::surfaces::{Drawing, Feature, Random};
 use crosscap_backends::files::{
     MeshExtras, PointOptions, read_indices, read_mesh, read_points, write_mesh, write_points,
 };
@@ -925,6 +925,29 @@ fn points_count_in_a_check() {
     room.run("check sphere.npz --points plane.csv")
         .expect(2)
         .complains("plane.csv: found points in R^2, expected R^3");
+}
+
+/// Where landmarks follow the spacing of the points, so does the check: a mesh that was verified is verified again.
+#[test]
+fn a_check_measures_in_the_lengths_that_a_mesh_was_made_with() {
+    let room = Room::new();
+    let drawing = Drawing {
+        count: 1400,
+        size: 5.0,
+        ratio: 12.0,
+        noise: 0.0,
+        seed: 3,
+    };
+    let cloud = Feature::find("thin-torus").unwrap().draw(&drawing).unwrap();
+    write_points(room.path("p.npy"), &cloud.points).unwrap();
+    room.run("reconstruct p.npy -o m.npz --eps 0.43 --dl 0.215 --metric conformal --graph-k 20 --surface")
+        .expect(0)
+        .says("One torus");
+    room.run("check m.npz --points p.npy").expect(0);
+    // One separation everywhere is what the mesh was not made with.
+    room.run("check m.npz --points p.npy --dl 0.215")
+        .expect(1)
+        .says("input points far from the mesh");
 }
 
 #[test]

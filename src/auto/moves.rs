@@ -44,7 +44,7 @@ const GRAPH: usize = 20;
 const LOCAL: usize = 30;
 /// Factors on eps, or on both lengths.
 const LARGER: f64 = 1.3;
-const SMALLER: f64 = 0.8;
+pub(super) const SMALLER: f64 = 0.8;
 /// Part of the separation that the gaps of the points ask for that is taken: landmarks lie as chance has it.
 pub(crate) const ROOMY: f64 = 0.95;
 /// Factor on the separation alone.

@@ -180,9 +180,13 @@ impl Better {
     /// The outcome with rows of the input, its mesh measured against the points where they were given.
     fn in_input(&self, mut outcome: Outcome, parameters: &Parameters) -> Outcome {
         if self.noise > 0.0 {
+            // Where it cannot be told, the separation is the same everywhere, which is stricter where points are sparse.
+            let scale = parameters.spaces.metric.separation_scale(&self.unmoved);
+            let scale = scale.ok().flatten();
             let options = CertificateOptions {
                 points: Some(&self.unmoved),
                 landmark_separation: Some(parameters.dl),
+                separation_scale: scale.as_deref(),
                 noise: self.noise,
                 ..CertificateOptions::default()
             };

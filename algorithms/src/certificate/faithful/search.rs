@@ -192,7 +192,7 @@ impl<'a> Search<'a> {
         Evenness::of(
             measures,
             self.points(),
-            Evenness::is_clustered(self.nearest()),
+            Evenness::clustering(self.nearest()),
         )
     }
 
