@@ -32,8 +32,6 @@ pub enum Move {
     /// Every point taken as one of a closed surface that does not cross itself, landmarks and charts by the spacing of the
     /// points, which varies much.
     Spaced,
-    /// The same, with other landmarks.
-    OtherLandmarks,
 }
 
 /// Points that the graph of unfolded charts joins each point to: enough to hold a random sample together, and
@@ -74,7 +72,6 @@ impl Move {
             Self::Spaced => {
                 "every point taken as one of a closed surface that does not cross itself, all lengths in the spacing of the points"
             }
-            Self::OtherLandmarks => "other landmarks",
         }
     }
 
@@ -119,7 +116,6 @@ impl Move {
             Self::Closed => one_surface(from, pinned, ModelName::TwoPlanes),
             Self::Ending => one_surface(from, pinned, ModelName::Boundary),
             Self::Spaced => spaced(from, pinned, density),
-            Self::OtherLandmarks => other_landmarks(from, pinned, 1),
             _ => None,
         }
         .filter(|found| found.dl >= CLOSEST * least && found.check().is_ok() && found != from)

@@ -95,41 +95,25 @@ impl Symptom {
             && (certificate.violations()).all(|v| at_ends(v) || v.kind == BridgedGap)
     }
 
-    /// What is worth trying, in order.
+    /// What is worth trying, in order. Of 756 clouds around one feature, 500 to 1500 points each, smaller neighborhoods passed at
+    /// 71 of 219 attempts, one closed surface at 36 of 260, charts that unfold at 5 of 114, other landmarks by themselves at 17 of
+    /// 60 the first time and never again.
     pub(super) fn moves(self) -> &'static [Move] {
         use Move::*;
         match self {
             Self::Sparse => &[Spaced, Larger, Local, Closed, Ending],
             Self::Unexplained => &[Spaced, Closed, Ending, Smaller, Local],
-            Self::Curves => &[Spaced, Closed, Ending, Smaller, Local, Finer, Unfolded],
-            Self::Folds | Self::Open => &[Spaced, Unfolded, Closed, Smaller, Ending, Local, Finer],
+            Self::Curves => &[Spaced, Smaller, Closed, Ending, Local, Finer, Unfolded],
+            Self::Folds | Self::Open => &[Spaced, Smaller, Closed, Unfolded, Ending, Local, Finer],
             Self::Coarse => &[Smaller, Ending, Finer, Spaced, Closed, Unfolded],
-            Self::Ends => &[Ending, Spaced, Closed, Smaller, Unfolded],
+            Self::Ends => &[Ending, Spaced, Smaller, Closed, Unfolded],
             // A gap stays open where landmarks are nearer to each other than it is wide, if the mesh may end there.
-            Self::Gaps => &[Finer, Ending, Spaced, Smaller],
+            Self::Gaps => &[Smaller, Ending, Finer, Spaced],
             // Paths along the surface do not lead from one sheet to the other.
             Self::Merged => &[Closed, Ending, Finer, Unfolded, Smaller],
             // In a smaller neighborhood there is less beside the curve that its end could be taken for.
-            Self::Behind => &[
-                Smaller,
-                OtherLandmarks,
-                Spaced,
-                Closed,
-                Finer,
-                Ending,
-                Unfolded,
-                Local,
-            ],
-            Self::Cover => &[
-                Spaced,
-                OtherLandmarks,
-                Closed,
-                Finer,
-                Smaller,
-                Ending,
-                Unfolded,
-                Local,
-            ],
+            Self::Behind => &[Smaller, Spaced, Closed, Finer, Ending, Unfolded, Local],
+            Self::Cover => &[Spaced, Smaller, Closed, Finer, Ending, Unfolded, Local],
         }
     }
 }

@@ -8,8 +8,10 @@ use crate::auto::needs::RESOLVING;
 use crate::auto::symptoms::Symptom;
 use crate::pipeline::Parameters;
 
-/// Other landmarks in a row, where little is wrong.
-const AGAIN: usize = 2;
+/// Other landmarks in a row, where little is wrong: of 30 attempts with others again none passed.
+const AGAIN: usize = 1;
+/// Attempts to confirm with landmarks as far apart, where they fail.
+const CONFIRMING: usize = 2;
 /// Separations that differ by less than this share give other landmarks and hardly another mesh.
 const ALIKE: f64 = 0.08;
 
@@ -87,7 +89,7 @@ impl Progress<'_> {
                 let needed = needed.min(RESOLVING * passed.dl);
                 opened(passed, &self.pinned, density, needed)
             }
-            None if time > AGAIN => Move::Smaller.apply(passed, &self.pinned, density),
+            None if time > CONFIRMING => Move::Smaller.apply(passed, &self.pinned, density),
             None => None,
         };
         let other = || other_landmarks(passed, &self.pinned, time);
