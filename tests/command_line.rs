@@ -932,20 +932,23 @@ fn points_count_in_a_check() {
 fn a_check_measures_in_the_lengths_that_a_mesh_was_made_with() {
     let room = Room::new();
     let drawing = Drawing {
-        count: 1400,
-        size: 5.0,
-        ratio: 12.0,
+        count: 800,
+        size: 8.3,
+        ratio: 20.0,
         noise: 0.0,
-        seed: 3,
+        seed: 5,
     };
-    let cloud = Feature::find("thin-torus").unwrap().draw(&drawing).unwrap();
+    let cloud = Feature::find("small-part").unwrap().draw(&drawing).unwrap();
     write_points(room.path("p.npy"), &cloud.points).unwrap();
-    room.run("reconstruct p.npy -o m.npz --eps 0.43 --dl 0.215 --metric conformal --graph-k 20 --surface")
+    let dl = 1.7 * cloud.spacing;
+    let lengths = format!("--eps {} --dl {dl}", 2.0 * dl);
+    let spaced = "--metric conformal --graph-k 20 --surface --models two-planes";
+    room.run(&format!("reconstruct p.npy -o m.npz {lengths} {spaced}"))
         .expect(0)
-        .says("One torus");
+        .says("Two spheres");
     room.run("check m.npz --points p.npy").expect(0);
     // One separation everywhere is what the mesh was not made with.
-    room.run("check m.npz --points p.npy --dl 0.215")
+    room.run(&format!("check m.npz --points p.npy --dl {dl}"))
         .expect(1)
         .says("input points far from the mesh");
 }

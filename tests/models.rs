@@ -227,7 +227,7 @@ fn a_segment_of_three_landmarks_is_no_circle() {
         models: ModelName::AUTO.to_vec(),
         ..Parameters::new(0.71, 0.355)
     };
-    let pipeline = Pipeline::new(parameters).unwrap();
+    let mut pipeline = Pipeline::new(parameters).unwrap();
     let outcome = pipeline.reconstruct(&cloud.points).unwrap();
     assert!(outcome.is_verified(), "{}", outcome.certificate);
     assert_eq!(outcome.homology.betti_rational, [2, 0, 0]);
