@@ -179,6 +179,10 @@ pub struct SkeletonTuning {
     pub end_separation: f64,
     /// A chain is joined to a corner, or two free ends to each other, over at most this.
     pub join: f64,
+    /// Longest stretch without points that a curve without a surface is joined over to a corner or to another end.
+    pub bare_gap: f64,
+    /// Points this far from the straight way between two places lead along it.
+    pub beside_way: f64,
     /// How many separations along a curve are tried: the closing gap of a closed curve depends on the
     /// separation, and long edges are the bad ones.
     pub stretches: usize,
@@ -197,6 +201,8 @@ impl SkeletonTuning {
         bridge: 2.0,
         end_separation: 0.6,
         join: 3.0,
+        bare_gap: 1.0,
+        beside_way: 0.5,
         stretches: 16,
         stretch_step: 0.025,
         label_spacing: 0.2,

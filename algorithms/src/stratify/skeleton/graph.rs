@@ -39,7 +39,7 @@ impl CurveGraph {
         self.nodes.rows.len()
     }
 
-    /// Joins each corner to the nearest node of every branch. A part of a curve that does not reach
+    /// Joins each corner to the nearest node of every branch, one without a surface only where points lead there. A part of a curve that does not reach
     /// farther than dl from the corner is none: it has no room for a landmark, and would stand between
     /// the corner and its curve.
     fn join_corners<S: Scalar>(&mut self, skeleton: &Skeleton, ground: &Ground<'_, '_, S>) {
@@ -74,6 +74,9 @@ impl CurveGraph {
             let own = self.links.len();
             self.links.push(Vec::new());
             for (_, k, d) in branches {
+                if self.nodes.is_bare(ground, k) && !ground.is_followed(corner, rows[k]) {
+                    continue;
+                }
                 self.links[own].push((k, d));
                 self.links[k].push((own, d));
             }

@@ -28,11 +28,13 @@ impl Skeleton {
             for &b in &free[..x] {
                 let joined = self.edges.iter().any(|e| e.landmarks() == [b, a]);
                 let d = ground.distance(self.rows[a], self.rows[b]);
-                let turns_back = || {
-                    cells[a] == 0
-                        && (self.turns_back(ground, a, b) || self.turns_back(ground, b, a))
+                let goes_on = || {
+                    cells[a] > 0
+                        || ground.is_followed(self.rows[a], self.rows[b])
+                            && !self.turns_back(ground, a, b)
+                            && !self.turns_back(ground, b, a)
                 };
-                if cells[a] == cells[b] && d <= reach && !joined && !turns_back() {
+                if cells[a] == cells[b] && d <= reach && !joined && goes_on() {
                     pairs.push((d, b, a));
                 }
             }
