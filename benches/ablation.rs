@@ -273,6 +273,7 @@ const NUMBERS: &[Number] = numbers! {
     Length skeleton.join out 0.0;
     Count skeleton.stretches out 1.0;
     Length skeleton.bare_gap;
+    Length skeleton.bare_chance out 0.0;
     Length skeleton.beside_way;
     Length skeleton.stretch_step;
     Length skeleton.label_spacing;
@@ -328,6 +329,7 @@ const NUMBERS: &[Number] = numbers! {
     Length models.curve_and_sheet.clear out 0.0;
     Length models.curve_and_sheet.steepest out 1e6;
     Count models.curve_and_sheet.arc;
+    Length models.curve_and_sheet.apart out 0.0;
     Length models.curve_and_sheet.length out 0.0;
 };
 

@@ -2,7 +2,9 @@
 
 use crate::orthogonal::dot;
 use crate::stratify::analysis::Fitter;
+use crate::stratify::site::StratumKind;
 use crate::stratify::strata::Strata;
+use crate::stretch;
 use crate::tuning::SkeletonTuning;
 use crosscap_core::{PointCloud, Row, Scalar};
 
@@ -21,34 +23,50 @@ impl<S: Scalar> Ground<'_, '_, S> {
         self.places.squared_distance(a.index(), b.index()).sqrt()
     }
 
-    /// Whether points lead from one place to another: beside the straight way no stretch without them is longer than what a
-    /// curve without a surface is joined over. O(k log k) for the k points as near to the first place as the other one.
-    pub(super) fn is_followed(&self, a: Row, b: Row) -> bool {
-        let SkeletonTuning {
-            bare_gap,
-            beside_way,
-            ..
-        } = *self.tuning;
-        let length = self.distance(a, b);
-        if length <= bare_gap * self.dl {
+    /// Whether points lead from one place to another, on a curve without a surface: beside the straight way no stretch without
+    /// them is too long for chance, next to the spacings of the curve about the other place.
+    /// O(k log k) for the k points as near to the first place as the other one.
+    pub(super) fn is_followed(&self, from: Row, to: Row) -> bool {
+        let tuning = self.tuning;
+        let length = self.distance(from, to);
+        if length <= tuning.bare_gap * self.dl {
             return true;
         }
-        let from = self.places.point(a.index());
-        let way_to = |row: Row| -> Vec<f64> {
-            let to = self.places.point(row.index());
-            to.iter().zip(from).map(|(x, o)| x - o).collect()
-        };
-        let way = way_to(b);
         let mut near = Vec::new();
-        (self.fitter).around(a, length + self.strata.moved(a), &mut near);
-        let along = near.iter().filter_map(|&row| {
+        (self.fitter).around(from, length + self.strata.moved(from), &mut near);
+        let inside = self
+            .along(from, to, &near)
+            .filter(|along| (0.0..length).contains(along));
+        let mut stops: Vec<f64> = inside.chain([0.0, length]).collect();
+        stops.sort_unstable_by(f64::total_cmp);
+        let stretches = stops.windows(2).map(|pair| pair[1] - pair[0]);
+        let longest = stretches.fold(0.0, f64::max);
+        if longest <= tuning.bare_gap * self.dl {
+            return true;
+        }
+        self.fitter.around(to, tuning.join * self.dl, &mut near);
+        near.retain(|&row| {
+            self.strata.kind(row) == Some(StratumKind::Curve) && self.strata.cells(row) == 0
+        });
+        let curve = || near.iter().map(|&row| self.distance(to, row));
+        let span = curve().fold(0.0, f64::max);
+        stretch::chance(longest, span, near.len().saturating_sub(1)) >= tuning.bare_chance
+    }
+
+    /// How far along the straight way between two places those of the given rows are that lie beside it.
+    fn along<'r>(&'r self, from: Row, to: Row, rows: &'r [Row]) -> impl Iterator<Item = f64> + 'r {
+        let start = self.places.point(from.index());
+        let way_to = move |row: Row| -> Vec<f64> {
+            let place = self.places.point(row.index());
+            place.iter().zip(start).map(|(x, o)| x - o).collect()
+        };
+        let way = way_to(to);
+        let (length, beside) = (self.distance(from, to), self.tuning.beside_way * self.dl);
+        rows.iter().filter_map(move |&row| {
             let own = way_to(row);
             let along = dot(&own, &way) / length;
-            let beside = (dot(&own, &own) - along * along).max(0.0).sqrt();
-            (beside <= beside_way * self.dl && along > 0.0 && along < length).then_some(along)
-        });
-        let mut stops: Vec<f64> = along.chain([0.0, length]).collect();
-        stops.sort_unstable_by(f64::total_cmp);
-        (stops.windows(2)).all(|stretch| stretch[1] - stretch[0] <= bare_gap * self.dl)
+            let off = (dot(&own, &own) - along * along).max(0.0).sqrt();
+            (off <= beside).then_some(along)
+        })
     }
 }
