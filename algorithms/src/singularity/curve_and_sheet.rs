@@ -339,7 +339,8 @@ impl Fit {
                 arcs[usize::from(*label) - 1].take(to_sheet.abs());
             }
         }
-        let arcs = arcs.map(|arc| arc.points_from_sheet(ep, tuning));
+        let others = [arcs[1], arcs[0]];
+        let arcs = [0, 1].map(|side| arcs[side].points_from_sheet(others[side], ep, tuning));
         let lengths = beside.iter().map(|x| curve.parameter(x));
         let span = lengths.clone().fold(f64::NEG_INFINITY, f64::max)
             - lengths.fold(f64::INFINITY, f64::min);
@@ -414,11 +415,18 @@ impl Arc {
         self.farthest = self.farthest.max(height);
     }
 
-    /// How many they are, where the arc reaches the sheet; none where chance does not explain how far from it they begin. Nearer
-    /// than `ep` they are not told from the sheet. Heights stand for lengths, as only their ratio counts.
-    fn points_from_sheet(self, ep: f64, tuning: &CurveAndSheetTuning) -> usize {
-        let others = self.points.saturating_sub(1);
-        let apart = stretch::chance(self.nearest - ep, self.farthest - self.nearest, others);
+    /// Length between the points, and the number of spacings in it.
+    fn spacings(self) -> (f64, usize) {
+        let between = self.farthest - self.nearest;
+        (between.max(0.0), self.points.saturating_sub(1))
+    }
+
+    /// How many they are, where the arc reaches the sheet; none where chance does not explain how far from it they begin, next to
+    /// the spacings of both arcs. Nearer than `ep` they are not told from the sheet. Heights stand for lengths, as only their
+    /// ratio counts.
+    fn points_from_sheet(self, other: Self, ep: f64, tuning: &CurveAndSheetTuning) -> usize {
+        let [own, others] = [self, other].map(Self::spacings);
+        let apart = stretch::chance(self.nearest - ep, own.0 + others.0, own.1 + others.1);
         if apart < tuning.apart { 0 } else { self.points }
     }
 }

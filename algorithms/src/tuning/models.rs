@@ -241,7 +241,7 @@ impl CurveAndSheetTuning {
         clear: 1.5,
         steepest: 2.0,
         arc: 2,
-        apart: 1e-3,
+        apart: 1e-2,
         length: 3.0,
     };
 }

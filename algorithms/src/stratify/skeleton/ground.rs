@@ -24,9 +24,9 @@ impl<S: Scalar> Ground<'_, '_, S> {
     }
 
     /// Whether points lead from one place to another, on a curve without a surface: beside the straight way no stretch without
-    /// them is too long for chance, next to the spacings of the curve about the other place.
+    /// them is too long for chance, next to the spacings of the curve about the other place, where so many ways are `tried`.
     /// O(k log k) for the k points as near to the first place as the other one.
-    pub(super) fn is_followed(&self, from: Row, to: Row) -> bool {
+    pub(super) fn is_followed(&self, from: Row, to: Row, tried: usize) -> bool {
         let tuning = self.tuning;
         let length = self.distance(from, to);
         if length <= tuning.bare_gap * self.dl {
@@ -50,7 +50,8 @@ impl<S: Scalar> Ground<'_, '_, S> {
         });
         let curve = || near.iter().map(|&row| self.distance(to, row));
         let span = curve().fold(0.0, f64::max);
-        stretch::chance(longest, span, near.len().saturating_sub(1)) >= tuning.bare_chance
+        let chance = stretch::chance(longest, span, near.len().saturating_sub(1));
+        tried as f64 * chance >= tuning.bare_chance
     }
 
     /// How far along the straight way between two places those of the given rows are that lie beside it.

@@ -30,7 +30,7 @@ impl Skeleton {
                 let d = ground.distance(self.rows[a], self.rows[b]);
                 let goes_on = || {
                     cells[a] > 0
-                        || ground.is_followed(self.rows[a], self.rows[b])
+                        || ground.is_followed(self.rows[a], self.rows[b], self.rows.len())
                             && !self.turns_back(ground, a, b)
                             && !self.turns_back(ground, b, a)
                 };
