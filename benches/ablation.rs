@@ -329,7 +329,6 @@ const NUMBERS: &[Number] = numbers! {
     Length models.curve_and_sheet.clear out 0.0;
     Length models.curve_and_sheet.steepest out 1e6;
     Count models.curve_and_sheet.arc;
-    Length models.curve_and_sheet.apart out 0.0;
     Length models.curve_and_sheet.length out 0.0;
 };
 

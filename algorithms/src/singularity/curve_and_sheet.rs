@@ -6,7 +6,6 @@ use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::sheets::patch_over;
 use super::tolerance::{Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
-use crate::stretch;
 use crate::tuning::CurveAndSheetTuning;
 use crosscap_core::{
     Decomposition, Error, Label, Link, LinkKind, LocalPoints, Rejection, SingularityModel, Stratum,
@@ -319,7 +318,7 @@ impl Fit {
         let apex = meeting(&sheet, &curve, &center, tuning, local.radius)
             .ok_or(Rejection::NoRealSolution)?;
         let mut labels = vec![0u8; all.len()];
-        let mut arcs = [Arc::default(); 2];
+        let mut arcs = [0usize; 2];
         let mut sum = 0.0;
         for (k, (x, label)) in all.iter().zip(&mut labels).enumerate() {
             let to_sheet = sheet.signed_distance(x);
@@ -336,11 +335,9 @@ impl Fit {
             }
             // Of the few points of a curve the fitted ones can leave out all of an arc.
             if matches!(*label, 1 | 2) && (x - center).norm() < local.radius {
-                arcs[usize::from(*label) - 1].take(to_sheet.abs());
+                arcs[usize::from(*label) - 1] += 1;
             }
         }
-        let others = [arcs[1], arcs[0]];
-        let arcs = [0, 1].map(|side| arcs[side].points_from_sheet(others[side], ep, tuning));
         let lengths = beside.iter().map(|x| curve.parameter(x));
         let span = lengths.clone().fold(f64::NEG_INFINITY, f64::max)
             - lengths.fold(f64::INFINITY, f64::min);
@@ -387,47 +384,6 @@ impl Fit {
             center: place.unwrap_or(center).iter().copied().collect(),
             center_offset: place.map_or(f64::INFINITY, |p| (p - center).norm()),
         }
-    }
-}
-
-/// The points of a curve on one side of a sheet, by how far from the sheet they are.
-#[derive(Clone, Copy)]
-struct Arc {
-    points: usize,
-    nearest: f64,
-    farthest: f64,
-}
-
-impl Default for Arc {
-    fn default() -> Self {
-        Self {
-            points: 0,
-            nearest: f64::INFINITY,
-            farthest: 0.0,
-        }
-    }
-}
-
-impl Arc {
-    fn take(&mut self, height: f64) {
-        self.points += 1;
-        self.nearest = self.nearest.min(height);
-        self.farthest = self.farthest.max(height);
-    }
-
-    /// Length between the points, and the number of spacings in it.
-    fn spacings(self) -> (f64, usize) {
-        let between = self.farthest - self.nearest;
-        (between.max(0.0), self.points.saturating_sub(1))
-    }
-
-    /// How many they are, where the arc reaches the sheet; none where chance does not explain how far from it they begin, next to
-    /// the spacings of both arcs. Nearer than `ep` they are not told from the sheet. Heights stand for lengths, as only their
-    /// ratio counts.
-    fn points_from_sheet(self, other: Self, ep: f64, tuning: &CurveAndSheetTuning) -> usize {
-        let [own, others] = [self, other].map(Self::spacings);
-        let apart = stretch::chance(self.nearest - ep, own.0 + others.0, own.1 + others.1);
-        if apart < tuning.apart { 0 } else { self.points }
     }
 }
 
@@ -588,25 +544,5 @@ mod tests {
                 .decompose(&local(&points[..3 * fitted], fitted))
                 .is_err()
         );
-    }
-
-    #[test]
-    fn an_arc_that_begins_far_from_the_sheet_does_not_end_on_it() {
-        let points = ball(0.0, 40, 160);
-        let on = CurveOnSheet::new(RADIUS / 5.0, RADIUS / 10.0).unwrap();
-        let through = CurveThroughSheet::new(RADIUS / 5.0, RADIUS / 10.0).unwrap();
-        assert!(through.decompose(&local(&points, points.len() / 3)).is_ok());
-        // Without what is nearer than half of the radius on one side of the sheet.
-        let (rows, origin) = (points.chunks_exact(3), points[0]);
-        let on_curve = |x: &[f64]| (x[1] - points[1]).abs() + (x[2] - points[2]).abs() < 1e-9;
-        let between = |x: &[f64]| x[0] - origin > 1e-9 && x[0] - origin < 0.5 * RADIUS;
-        let apart: Vec<f64> = (rows
-            .filter(|x| !(on_curve(x) && between(x)))
-            .flatten()
-            .copied())
-        .collect();
-        let apart = local(&apart, apart.len() / 3);
-        assert!(through.decompose(&apart).is_err());
-        assert!(on.decompose(&apart).is_ok());
     }
 }

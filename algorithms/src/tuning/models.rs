@@ -226,8 +226,6 @@ pub struct CurveAndSheetTuning {
     pub steepest: f64,
     /// Fewest points of an arc.
     pub arc: usize,
-    /// Probability of the stretch without points between the sheet and an arc below which the arc does not reach it.
-    pub apart: f64,
     /// A curve is at least this many ep long.
     pub length: f64,
 }
@@ -241,7 +239,6 @@ impl CurveAndSheetTuning {
         clear: 1.5,
         steepest: 2.0,
         arc: 2,
-        apart: 1e-2,
         length: 3.0,
     };
 }

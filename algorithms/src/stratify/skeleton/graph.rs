@@ -16,6 +16,8 @@ pub(super) struct CurveGraph {
     pub(super) links: Vec<Vec<(usize, f64)>>,
     /// The connected parts, corners left out, each in order.
     pub(super) parts: Vec<Vec<usize>>,
+    /// Corners that a curve does not reach although the fit about them says so, once for each such curve.
+    pub(super) unreached: Vec<Row>,
 }
 
 impl CurveGraph {
@@ -30,6 +32,7 @@ impl CurveGraph {
             parts: components(&links, nodes.rows.len()),
             nodes,
             links,
+            unreached: Vec::new(),
         };
         out.join_corners(skeleton, ground);
         out.bridge(ground);
@@ -77,6 +80,7 @@ impl CurveGraph {
             self.links.push(Vec::new());
             for (_, k, d) in branches {
                 if self.nodes.is_bare(ground, k) && !ground.is_followed(corner, rows[k], 1) {
+                    self.unreached.push(corner);
                     continue;
                 }
                 self.links[own].push((k, d));
