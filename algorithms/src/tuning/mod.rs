@@ -7,6 +7,7 @@
 mod ends;
 mod front;
 mod models;
+mod pages;
 mod preparation;
 
 pub use ends::{BookEndTuning, BookTuning, CurveEndTuning, PinchPointTuning, RimTuning};
@@ -15,6 +16,7 @@ pub use models::{
     BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,
     TwoPlanesTuning, YJunctionTuning,
 };
+pub use pages::PagesTuning;
 
 pub use preparation::{
     NoiseTuning, OutlierTuning, PreparationTuning, ProjectionTuning, ResolutionTuning,
