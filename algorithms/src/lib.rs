@@ -27,6 +27,7 @@ pub mod singularity;
 pub mod space;
 mod spectrum;
 pub mod stratify;
+mod stretch;
 pub mod surfaces;
 pub mod tiles;
 pub mod triangulate;

@@ -184,9 +184,13 @@ impl Better {
             lift(subspace, &mut outcome);
         }
         if self.noise > 0.0 {
+            // Where it cannot be told, the separation is the same everywhere, which is stricter where points are sparse.
+            let scale = parameters.spaces.metric.separation_scale(&self.unmoved);
+            let scale = scale.ok().flatten();
             let options = CertificateOptions {
                 points: Some(&self.unmoved),
                 landmark_separation: Some(parameters.dl),
+                separation_scale: scale.as_deref(),
                 noise: self.noise,
                 ..CertificateOptions::default()
             };

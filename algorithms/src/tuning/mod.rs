@@ -182,6 +182,13 @@ pub struct SkeletonTuning {
     pub end_separation: f64,
     /// A chain is joined to a corner, or two free ends to each other, over at most this.
     pub join: f64,
+    /// A curve without a surface is joined to a corner or to another end over no longer stretch without points than this, unless
+    /// chance explains it.
+    pub bare_gap: f64,
+    /// Probability of such a stretch, beside the spacings of the curve, below which chance does not.
+    pub bare_chance: f64,
+    /// Points this far from the straight way between two places lead along it.
+    pub beside_way: f64,
     /// How many separations along a curve are tried: the closing gap of a closed curve depends on the
     /// separation, and long edges are the bad ones.
     pub stretches: usize,
@@ -200,6 +207,9 @@ impl SkeletonTuning {
         bridge: 2.0,
         end_separation: 0.6,
         join: 3.0,
+        bare_gap: 1.0,
+        bare_chance: 1e-3,
+        beside_way: 0.5,
         stretches: 16,
         stretch_step: 0.025,
         label_spacing: 0.2,
