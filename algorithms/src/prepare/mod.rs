@@ -28,4 +28,5 @@ pub use outliers::Outliers;
 pub use preparation::{Preparation, PreparationSummary, Remedies};
 pub use projection::Projection;
 pub use resolution::Resolution;
+pub(crate) use sheet_fit::SheetFit;
 pub use spacing::LocalSpacing;
