@@ -14,6 +14,7 @@ pub mod isomap;
 pub mod landmarks;
 #[cfg(any(test, feature = "laws"))]
 pub mod laws;
+mod locality;
 pub mod metric;
 pub mod moments;
 pub mod neighborhood;

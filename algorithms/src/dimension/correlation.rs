@@ -4,7 +4,6 @@ use super::decision::decide;
 use super::global::{GlobalDimension, GlobalEstimator, Scale, WholeCloud, median};
 use super::jackknife::error_by_ranks;
 use super::pairs::Pairs;
-use crate::execute;
 use crosscap_core::{DimensionEstimate, DimensionEstimator, Error, Neighborhood, Scalar};
 use std::marker::PhantomData;
 
@@ -116,7 +115,7 @@ impl<S: Scalar> GlobalEstimator<S> for CorrelationDimension<S> {
             });
         }
         // Pairs of a point with the others, nearer than either radius.
-        let counts = execute::map(space.execute, space.len(), Vec::new, |near, i| {
+        let counts = space.map(Vec::new, |near, i| {
             space.oracle.within(i, S::of(large), near);
             let fewer = near.partition_point(|x| x.distance.as_f64() < small);
             [
@@ -160,7 +159,7 @@ pub(super) fn neighbor_medians<S: Scalar>(
 ) -> [f64; 2] {
     let far = far.min(space.len() - 1);
     let near = near.clamp(1, far);
-    let found = execute::map(space.execute, space.len(), Vec::new, |all, i| {
+    let found = space.map(Vec::new, |all, i| {
         space.oracle.nearest(i, far + 1, all);
         let at = |k: usize| all.get(k).map_or(f64::INFINITY, |x| x.distance.as_f64());
         [at(near), at(far)]

@@ -1,7 +1,6 @@
 //! Minimum spanning trees of some points of a graph, under the lengths of shortest ways.
 
 use super::global::WholeCloud;
-use crate::execute;
 use crosscap_core::Scalar;
 use petgraph::unionfind::UnionFind;
 use std::cmp::Ordering;
@@ -36,7 +35,7 @@ impl PartialOrd for Waiting {
 impl NeighborGraph {
     /// Joins every point to its neighborhood. O(n k) besides the queries.
     pub(super) fn of<S: Scalar>(space: &WholeCloud<'_, S>) -> Self {
-        let rows = execute::map(space.execute, space.len(), Vec::new, |near, i| {
+        let rows = space.map(Vec::new, |near, i| {
             space.neighborhood(i, near);
             near.iter()
                 .filter(|x| x.index != i)

@@ -1,7 +1,8 @@
 //! The dimension of a whole cloud.
 
 use super::decision::{confidence, decide};
-use crate::execute::{self, Execute};
+use crate::execute::Execute;
+use crate::locality;
 use crosscap_core::{
     DimensionEstimate, DimensionEstimator, Error, MetricSpace, Neighbor, Neighborhood,
     NeighborhoodOracle, PointCloud, Scalar,
@@ -66,6 +67,15 @@ impl<S: Scalar> WholeCloud<'_, S> {
         self.oracle.len()
     }
 
+    /// What `work` makes of every point, by row, with a workspace for each thread.
+    pub(super) fn map<T: Send + Sync, C>(
+        &self,
+        scratch: impl Fn() -> C + Sync,
+        work: impl Fn(&mut C, usize) -> T + Sync,
+    ) -> Vec<T> {
+        locality::map(self.execute, self.cloud, self.oracle.len(), scratch, work)
+    }
+
     /// Whether there is no point.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -85,7 +95,7 @@ impl<S: Scalar> WholeCloud<'_, S> {
             Scale::Nearest(_) => f64::INFINITY,
             Scale::Within(r) => r,
         };
-        let found = execute::map(self.execute, self.len(), Vec::new, |near, center| {
+        let found = self.map(Vec::new, |near, center| {
             self.neighborhood(center, near);
             estimator.estimate(&Neighborhood {
                 center,

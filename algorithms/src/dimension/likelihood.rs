@@ -2,7 +2,6 @@
 
 use super::decision::decide;
 use super::global::{GlobalDimension, GlobalEstimator, Scale, WholeCloud};
-use crate::execute;
 use crosscap_core::{DimensionEstimate, DimensionEstimator, Error, Neighbor, Neighborhood, Scalar};
 use std::marker::PhantomData;
 
@@ -113,7 +112,7 @@ impl<S: Scalar> GlobalEstimator<S> for MaximumLikelihood<S> {
             Scale::Nearest(_) => f64::INFINITY,
             Scale::Within(r) => r,
         };
-        let local = execute::map(space.execute, space.len(), Vec::new, |near, i| {
+        let local = space.map(Vec::new, |near, i| {
             space.neighborhood(i, near);
             let nearest = near.iter().map(|x| x.distance.as_f64()).find(|&d| d > 0.0);
             let farthest = near.last().map_or(0.0, |x| x.distance.as_f64());

@@ -1,6 +1,7 @@
 //! Tangent planes of a surface that may cross itself.
 
-use crate::execute::{self, Execute};
+use crate::execute::Execute;
+use crate::locality;
 use crate::principal::PrincipalFrame;
 use crosscap_core::{Error, NeighborhoodOracle, PointCloud, Scalar};
 
@@ -62,20 +63,32 @@ pub fn tangent_planes<S: Scalar>(
             expected: format!("at least {LEAST}"),
         });
     }
-    let own = execute::map(execute, cloud.len(), Scratch::default, |scratch, i| {
-        scratch.look(cloud, oracle, i, count);
-        plane(scratch).ok_or(Error::SparseNeighborhood {
-            point: i,
-            found: scratch.rows.len(),
-            needed: LEAST,
-            parameter: "the number of points of a tangent plane",
-        })
-    });
+    let own = locality::map(
+        execute,
+        Some(cloud),
+        cloud.len(),
+        Scratch::default,
+        |scratch, i| {
+            scratch.look(cloud, oracle, i, count);
+            plane(scratch).ok_or(Error::SparseNeighborhood {
+                point: i,
+                found: scratch.rows.len(),
+                needed: LEAST,
+                parameter: "the number of points of a tangent plane",
+            })
+        },
+    );
     let own = own.into_iter().collect::<Result<Vec<Basis>, Error>>()?;
-    let planes = execute::map(execute, cloud.len(), Scratch::default, |scratch, i| {
-        scratch.look(cloud, oracle, i, count);
-        among_neighbors(cloud, i, scratch, &own)
-    });
+    let planes = locality::map(
+        execute,
+        Some(cloud),
+        cloud.len(),
+        Scratch::default,
+        |scratch, i| {
+            scratch.look(cloud, oracle, i, count);
+            among_neighbors(cloud, i, scratch, &own)
+        },
+    );
     let numbers = planes.into_iter().flatten().flatten();
     Ok(numbers.map(S::of).collect())
 }

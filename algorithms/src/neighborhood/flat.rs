@@ -1,7 +1,6 @@
 //! As large as the surface is flat.
 
 use super::{NeighborhoodPolicy, Surroundings, reach_of_nearest};
-use crate::execute;
 use crosscap_core::{DimensionEstimator, Error, Neighbor, Neighborhood, Scalar};
 
 /// The largest radius of a falling ladder at which an estimator calls the neighborhood
@@ -94,11 +93,10 @@ impl<'a, S: Scalar> FlatRadius<'a, S> {
 
 impl<S: Scalar> NeighborhoodPolicy<S> for FlatRadius<'_, S> {
     fn radii(&self, space: &Surroundings<'_, S>) -> Result<Vec<f64>, Error> {
-        execute::map(space.execute, space.oracle.len(), Vec::new, |near, i| {
-            self.radius(space, i, near)
-        })
-        .into_iter()
-        .collect()
+        space
+            .map(Vec::new, |near, i| self.radius(space, i, near))
+            .into_iter()
+            .collect()
     }
 
     fn name(&self) -> &str {

@@ -23,6 +23,7 @@ pub use nearest::NearestCount;
 pub use oracle::PolicyOracle;
 
 use crate::execute::Execute;
+use crate::locality;
 use crosscap_core::{Error, MetricSpace, NeighborhoodOracle, PointCloud, Scalar};
 
 /// A finite space as a policy sees it.
@@ -36,6 +37,17 @@ pub struct Surroundings<'a, S: Scalar> {
     pub cloud: Option<&'a PointCloud<S>>,
     /// What runs the points.
     pub execute: &'a dyn Execute,
+}
+
+impl<S: Scalar> Surroundings<'_, S> {
+    /// What `work` makes of every point, by row, with a workspace for each thread.
+    pub(super) fn map<T: Send + Sync, C>(
+        &self,
+        scratch: impl Fn() -> C + Sync,
+        work: impl Fn(&mut C, usize) -> T + Sync,
+    ) -> Vec<T> {
+        locality::map(self.execute, self.cloud, self.oracle.len(), scratch, work)
+    }
 }
 
 /// Gives every point the radius of its neighborhood.

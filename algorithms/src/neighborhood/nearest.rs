@@ -1,7 +1,6 @@
 //! As many points for every point.
 
 use super::{NeighborhoodPolicy, Surroundings, reach_of_nearest};
-use crate::execute;
 use crosscap_core::{Error, Scalar};
 
 /// The radius that reaches the `count` nearest other points, ties included (named as the
@@ -30,11 +29,10 @@ impl NearestCount {
 
 impl<S: Scalar> NeighborhoodPolicy<S> for NearestCount {
     fn radii(&self, space: &Surroundings<'_, S>) -> Result<Vec<f64>, Error> {
-        execute::map(space.execute, space.oracle.len(), Vec::new, |near, i| {
-            reach_of_nearest(space, i, self.0, near)
-        })
-        .into_iter()
-        .collect()
+        space
+            .map(Vec::new, |near, i| reach_of_nearest(space, i, self.0, near))
+            .into_iter()
+            .collect()
     }
 
     fn name(&self) -> &str {

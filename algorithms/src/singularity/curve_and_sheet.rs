@@ -113,15 +113,39 @@ struct Kept {
     fitted: usize,
     center: usize,
     radius: f64,
-    conditions: Conditions,
-    fit: Result<Fit, Rejection>,
+    conditions: Option<Conditions>,
+    /// None where it was handed out already.
+    fit: Option<Result<Fit, Rejection>>,
 }
 
 impl Kept {
+    const NOTHING: Self = Self {
+        coordinates: Vec::new(),
+        fitted: 0,
+        center: 0,
+        radius: 0.0,
+        conditions: None,
+        fit: None,
+    };
+
+    fn keep(
+        &mut self,
+        local: &LocalPoints<'_>,
+        conditions: &Conditions,
+        fit: Result<Fit, Rejection>,
+    ) {
+        self.coordinates.clear();
+        self.coordinates.extend_from_slice(local.coordinates);
+        (self.fitted, self.center) = (local.fitted, local.center);
+        self.radius = local.radius;
+        self.conditions = Some(*conditions);
+        self.fit = Some(fit);
+    }
+
     fn is_of(&self, local: &LocalPoints<'_>, conditions: &Conditions) -> bool {
         (self.fitted, self.center) == (local.fitted, local.center)
             && self.radius == local.radius
-            && self.conditions == *conditions
+            && self.conditions.as_ref() == Some(conditions)
             && self.coordinates == local.coordinates
     }
 }
@@ -130,11 +154,15 @@ thread_local! {
     /// The last fit of this thread. Whether the curve ends on the sheet is asked right after whether it goes
     /// through, about the same points, and the fit is the same; comparing the points takes a hundredth of
     /// the time of fitting.
-    static LAST: RefCell<Option<Kept>> = const { RefCell::new(None) };
+    static LAST: RefCell<Kept> = const { RefCell::new(Kept::NOTHING) };
 }
 
 /// Whether one sheet holds nearly all points, as it mostly does.
 fn one_sheet_holds(points: &[Vector3<f64>], radius: f64, ep: f64) -> bool {
+    // The plane of the neighborhood is a sheet, too, and asks for no fit.
+    if points.iter().all(|x| x.z.abs() <= ep) {
+        return true;
+    }
     let mut single =
         QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
     single.fit(points.iter().copied(), radius);
@@ -247,19 +275,13 @@ fn meeting(
 impl Fit {
     fn of(local: &LocalPoints<'_>, conditions: &Conditions) -> Result<Self, Rejection> {
         LAST.with_borrow_mut(|last| {
-            let kept = last.take().filter(|kept| kept.is_of(local, conditions));
-            if let Some(kept) = kept {
-                return kept.fit;
+            if last.is_of(local, conditions)
+                && let Some(fit) = last.fit.take()
+            {
+                return fit;
             }
             let fit = Self::new(local, conditions);
-            *last = Some(Kept {
-                coordinates: local.coordinates.to_vec(),
-                fitted: local.fitted,
-                center: local.center,
-                radius: local.radius,
-                conditions: *conditions,
-                fit: fit.clone(),
-            });
+            last.keep(local, conditions, fit.clone());
             fit
         })
     }
@@ -270,13 +292,13 @@ impl Fit {
         let (count, ep) = (local.fitted, tolerance.ep);
         let all: Vec<Vector3<f64>> = vectors(local);
         let points = &all[..count];
-        let whole = Flat::of(points.iter().copied()).ok_or(Rejection::NoRealSolution)?;
         if one_sheet_holds(points, local.radius, ep) {
             return Err(Rejection::SimplerModelFits {
                 residual: ep,
                 simpler: ep,
             });
         }
+        let whole = Flat::of(points.iter().copied()).ok_or(Rejection::NoRealSolution)?;
         let plane = first_plane(points, whole, tuning, local.radius)?;
         let (sheet, curve) = sheet_and_curve(points, &plane, conditions, local.radius)?;
         let beside = off_sheet(&sheet, points, ep);

@@ -11,6 +11,8 @@ mod nearest;
 pub(crate) use nearest::{GRAPH_NEIGHBORS, NearestOfEach};
 
 use crate::audit;
+use crate::execute::Execute;
+use crate::locality;
 use crosscap_core::{
     Error, MetricSpace, Neighbor, NeighborhoodOracle, PointCloud, Scalar, squared_distance,
 };
@@ -74,6 +76,18 @@ impl<'a, S: Scalar> Space<'a, S> {
     /// The same space with another oracle for its metric.
     pub fn with_oracle(self, oracle: &'a dyn NeighborhoodOracle<Scalar = S>) -> Self {
         Self { oracle, ..self }
+    }
+
+    /// What `work` makes of every point, by row; `scratch` makes a workspace for one thread after another.
+    ///
+    /// Points that are near each other are worked on one after the other where there are coordinates.
+    pub(crate) fn map<T: Send + Sync, C>(
+        &self,
+        execute: &dyn Execute,
+        scratch: impl Fn() -> C + Sync,
+        work: impl Fn(&mut C, usize) -> T + Sync,
+    ) -> Vec<T> {
+        locality::map(execute, self.places, self.len(), scratch, work)
     }
 
     /// Number of points.

@@ -161,19 +161,21 @@ impl Search<'_> {
     fn pairs(&self, tiles: &[Empty], middles: &[f64]) -> Vec<(f64, u32, u32)> {
         let width = self.mesh.vertices.dimension();
         let tree = BallTree::new(width, middles);
+        let reach = |tile: &Empty| TOGETHER / self.middle_density(tile.triangle).sqrt();
+        let reaches: Vec<f64> = tiles.iter().map(reach).collect();
         let mut pairs = Vec::new();
         for (k, tile) in tiles.iter().enumerate() {
-            let corner = self.mesh.complex.triangles[tile.triangle as usize];
-            let reach = TOGETHER / self.ground.density_at(corner, [1.0 / 3.0; 3]).sqrt();
-            tree.within(&middles[k * width..(k + 1) * width], reach, |other, _| {
-                if other != k as u32 {
-                    let away = tile.away.min(tiles[other as usize].away);
+            let middle = &middles[k * width..(k + 1) * width];
+            tree.within(middle, reaches[k], |other, square| {
+                let at = other as usize;
+                // A pair that both see is told by the first of them.
+                if at > k || at < k && square >= reaches[at] * reaches[at] {
+                    let away = tile.away.min(tiles[at].away);
                     pairs.push((away, other.min(k as u32), other.max(k as u32)));
                 }
             });
         }
         pairs.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        pairs.dedup();
         pairs
     }
 }

@@ -2,6 +2,7 @@
 
 use super::chance::{self, LEVELS};
 use super::ground::COUNTED;
+use super::nearby::{Nearby, SPARE};
 use super::search::Search;
 use super::slope::{Expected, Hole};
 use super::tiles::{Cut, Shape, TILE};
@@ -66,6 +67,7 @@ impl Search<'_> {
         let finest = self.finest();
         let mut place = vec![0.0; self.mesh.vertices.dimension()];
         let (mut tiles, mut middles) = (Vec::new(), Vec::new());
+        let mut nearby = Nearby::default();
         for (t, &corner) in self.mesh.complex.triangles.iter().enumerate() {
             let shape = Shape::new(corners(self.mesh, t as u32));
             let most = corner.map(|v| self.ground.density[v as usize]);
@@ -73,17 +75,31 @@ impl Search<'_> {
             if !(most > 0.0 && shape.longest > 0.0) {
                 continue;
             }
+            // A point that covers a tile is closer to it than this.
+            let reach = least / most;
+            shape.place([1.0 / 3.0; 3], &mut place);
+            nearby.begin();
+            let about = (shape.radius + reach) * SPARE;
+            self.within(&place, about, |point| nearby.add(point));
+            let may_end = self.to_end(&place) < shape.radius + reach;
             shape.cut(&mut place, &mut |tile, place| {
                 let (scale, weights) = (tile.scale(), tile.middle());
-                let (away, end) = self.distances(place);
-                let (away, radius) = (away.min(end), shape.radius * scale);
-                if (away + radius) * most < least {
+                let radius = shape.radius * scale;
+                let covered = |away: f64| (away + radius) * most < least;
+                let near = nearby.look(tile.depth(), place, reach + radius);
+                if covered(near) || may_end && covered(self.to_end(place)) {
                     return Cut::Leave;
                 }
                 let density = self.ground.density_at(corner, weights);
                 if scale > finest && shape.longest * scale * density.sqrt() > TILE {
                     return Cut::Further;
                 }
+                let away = if near.is_finite() {
+                    near
+                } else {
+                    self.to_point(place)
+                };
+                let away = away.min(self.to_end(place));
                 if away * density.sqrt() >= least {
                     tiles.push(Empty {
                         triangle: t as u32,

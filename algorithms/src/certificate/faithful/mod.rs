@@ -14,6 +14,7 @@ mod evenness;
 pub(super) mod footprints;
 mod gaps;
 pub(super) mod ground;
+mod nearby;
 mod opening;
 mod overlay;
 mod patch;

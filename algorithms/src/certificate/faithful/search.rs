@@ -35,6 +35,8 @@ pub(in crate::certificate) struct Search<'a> {
     pub ground: &'a Ground,
     /// Which points are on which triangle.
     pub(super) standing: Standing,
+    /// The points that stand on triangles, by their positions among the feet, and the tree of their places.
+    on_triangles: Vec<u32>,
     tree: BallTree,
     rim: Option<BallTree>,
     /// What is taken off a distance to the end of the mesh.
@@ -57,9 +59,11 @@ impl<'a> Search<'a> {
     ) -> Self {
         let width = mesh.vertices.dimension();
         let count = mesh.complex.triangles.len();
-        let on_triangles: Vec<f64> = (0..feet.len())
-            .filter(|&i| (feet.items[i] as usize) < count)
-            .flat_map(|i| feet.place(i).iter().copied())
+        let on_triangles: Vec<u32> = (0..feet.len() as u32)
+            .filter(|&i| (feet.items[i as usize] as usize) < count)
+            .collect();
+        let spots: Vec<f64> = (on_triangles.iter())
+            .flat_map(|&i| feet.place(i as usize).iter().copied())
             .collect();
         let (places, chord) = rim(mesh, incidence);
         let mut search = Self {
@@ -68,7 +72,8 @@ impl<'a> Search<'a> {
             feet,
             ground,
             standing: Standing::new(count, feet),
-            tree: BallTree::new(width, &on_triangles),
+            on_triangles,
+            tree: BallTree::new(width, &spots),
             rim: (!places.is_empty()).then(|| BallTree::new(width, &places)),
             chord,
             even: Evenness::RANDOM,
@@ -138,7 +143,7 @@ impl<'a> Search<'a> {
 
     /// Number of points that stand on triangles.
     pub(super) fn points(&self) -> usize {
-        self.tree.order().len()
+        self.on_triangles.len()
     }
 
     /// The side of the smallest tile of a triangle, as a share of the triangle's.
@@ -148,12 +153,27 @@ impl<'a> Search<'a> {
 
     /// Distance from a place to the nearest point, and to the end of the mesh.
     pub(super) fn distances(&self, place: &[f64]) -> (f64, f64) {
-        let nearest = |tree: &BallTree| tree.nearest(place, |_| true).map(|n| n.1.sqrt());
-        let end = self.rim.as_ref().and_then(nearest);
-        (
-            nearest(&self.tree).unwrap_or(f64::INFINITY),
-            end.map_or(f64::INFINITY, |d| (d - self.chord).max(0.0)),
-        )
+        (self.to_point(place), self.to_end(place))
+    }
+
+    /// Visits the places of the points closer to a place than `reach`.
+    pub(super) fn within(&self, place: &[f64], reach: f64, mut visit: impl FnMut(&[f64])) {
+        self.tree.within(place, reach, |at, _| {
+            visit(self.feet.place(self.on_triangles[at as usize] as usize));
+        });
+    }
+
+    /// Distance from a place to the nearest point.
+    pub(super) fn to_point(&self, place: &[f64]) -> f64 {
+        let found = self.tree.nearest(place, |_| true);
+        found.map_or(f64::INFINITY, |n| n.1.sqrt())
+    }
+
+    /// Distance from a place to the end of the mesh.
+    pub(super) fn to_end(&self, place: &[f64]) -> f64 {
+        let nearest = |tree: &BallTree| tree.nearest(place, |_| true);
+        let found = self.rim.as_ref().and_then(nearest);
+        found.map_or(f64::INFINITY, |n| (n.1.sqrt() - self.chord).max(0.0))
     }
 
     /// How even the points are, from the distances of places picked evenly to them.

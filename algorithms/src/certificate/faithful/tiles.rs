@@ -22,6 +22,11 @@ impl Tile {
         std::array::from_fn(|k| (a[k] + b[k] + c[k]) / 3.0)
     }
 
+    /// How often the triangle was cut.
+    pub fn depth(&self) -> usize {
+        self.depth as usize
+    }
+
     /// Its side, area or radius as a share of those of the triangle: the share of lengths.
     pub fn scale(&self) -> f64 {
         0.5_f64.powi(self.depth as i32)

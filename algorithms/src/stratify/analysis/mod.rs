@@ -21,7 +21,6 @@ pub use options::AnalysisOptions;
 pub(super) use options::marked;
 
 use crate::audit;
-use crate::execute;
 use crosscap_core::{BallDimension, Error, Row, Scalar, Table};
 use groups::Asked;
 
@@ -84,10 +83,12 @@ impl<S: Scalar> Fitter<'_, S> {
             ],
             false => self.dimensions(options.all_radii())?,
         };
-        let found = execute::map(self.execute, n, Scratch::default, |scratch, i| {
-            let (row, dimension) = (Row::new(i), balls[i].dimension as usize);
-            self.first_look(row, dimension, options, boundary[row], scratch)
-        });
+        let found = self
+            .space
+            .map(self.execute, Scratch::default, |scratch, i| {
+                let (row, dimension) = (Row::new(i), balls[i].dimension as usize);
+                self.first_look(row, dimension, options, boundary[row], scratch)
+            });
         let mut total = 0usize;
         let mut asked: Vec<(u8, Asked)> = Vec::new();
         for ((row, ball), verdict) in boundary.ids().zip(&balls).zip(found) {

@@ -25,7 +25,6 @@ use super::charts::ChartSpace;
 use super::producer::WaistProducer;
 use super::site::{FitUsed, On, Site, StratumKind};
 use super::stratifier::{Ground, Stratifier};
-use crate::execute;
 use crosscap_core::{Error, LandmarkSelector, LocalChart, Radii, Row, Scalar, Table};
 
 /// Parameters of the published method, lengths in the unit of the data.
@@ -124,11 +123,13 @@ impl Published {
         }
         let fitter = analyzer.fitter("since planes are fitted in them")?;
         let balls = fitter.dimensions(Radii::Same(self.eps))?;
-        let found = execute::map(analyzer.execute, n, Scratch::default, |scratch, i| {
-            (balls[i].dimension == 3)
-                .then(|| self.singular_part(&fitter, Row::new(i), scratch))
-                .flatten()
-        });
+        let found = analyzer
+            .space
+            .map(analyzer.execute, Scratch::default, |scratch, i| {
+                (balls[i].dimension == 3)
+                    .then(|| self.singular_part(&fitter, Row::new(i), scratch))
+                    .flatten()
+            });
         let mut on_curve: Table<Row, bool> = Table::filled(n, false);
         let mut total = 0usize;
         for ((row, ball), curve) in boundary.ids().zip(&balls).zip(found) {
