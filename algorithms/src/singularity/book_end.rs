@@ -310,8 +310,11 @@ impl CurveEnd for Fit {
         let near_rim = inside.abs() < self.ep;
         let on_rim = rim.place(&self.book.sheets.patches[sheet], &x);
         match (curve, near_rim) {
-            (Some((_, off, _)), true) if off < self.ep => (POINT, self.end, 0),
-            (Some((place, off, _)), false) if off < self.ep => (CURVE, place, pages),
+            // Far behind the end a boundary that bends comes near the curve again.
+            (Some((_, off, before)), true) if off < self.ep && before < self.witness * self.ep => {
+                (POINT, self.end, 0)
+            }
+            (Some((place, off, _)), _) if off < self.ep => (CURVE, place, pages),
             (_, true) => (rim_name, on_rim, 1),
             (Some((place, off, _)), _) if off < inside => (cell, place, pages),
             _ => (cell, on_rim, 1),

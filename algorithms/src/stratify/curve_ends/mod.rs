@@ -53,10 +53,9 @@ pub(super) fn explain<S: Scalar>(
             };
             models.iter().filter_map(one).min_by(better)
         };
-        let found = tuning.radii.iter().find_map(|factor| {
-            let first = asked(row, factor * eps);
-            first.or_else(|| asked(behind?, factor * eps))
-        });
+        let mut about =
+            |row: Row| (tuning.radii.iter()).find_map(|factor| asked(row, factor * eps));
+        let found = about(row).or_else(|| about(behind?));
         let Some((region, settled)) = found else {
             continue;
         };
@@ -70,7 +69,9 @@ pub(super) fn explain<S: Scalar>(
             });
         }
     }
-    for answer in &mut answers {
+    // A pinch point has no boundary: its balls are wide enough for its sheets to open, and what was seen there before is wrong.
+    let sheets_end = |a: &&mut Answer| a.region.fit.cells_at_curve.contains(&1);
+    for answer in answers.iter_mut().filter(sheets_end) {
         answer.keep_clear(fitter.cloud, |row| !strata.is_regular(row), tuning.overlap);
     }
     part::part(fitter.cloud, &mut answers, tuning.overlap);
