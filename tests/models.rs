@@ -19,7 +19,7 @@ struct Case {
     links: &'static [(LinkKind, Option<usize>)],
 }
 
-const CASES: [Case; 11] = [
+const CASES: [Case; 13] = [
     Case {
         surface: "three_spheres",
         points: 60_000,
@@ -128,6 +128,24 @@ const CASES: [Case; 11] = [
         betti: [1, 0, 0],
         links: &[(LinkKind::DoubleEnd, Some(6)), (LinkKind::Triple, Some(1))],
     },
+    Case {
+        surface: "book_5",
+        points: 8_000,
+        eps: 0.236,
+        dl: 0.0944,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::BookEnd, Some(2)), (LinkKind::Book, None)],
+    },
+    Case {
+        surface: "plate_on_plate",
+        points: 5_000,
+        eps: 0.219,
+        dl: 0.11,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::SideSheetEnd, Some(2))],
+    },
 ];
 
 fn reconstruct(case: &Case, seed: u64, models: &[ModelName]) -> Outcome {
@@ -190,6 +208,29 @@ fn points_are_in_their_places(case: &Case, outcome: &Outcome) {
             case.surface
         );
     }
+}
+
+/// A plate that stands through another: the double curve ends inside that one, two and a half radii from its rim.
+#[test]
+fn a_plate_through_the_middle_of_another() {
+    let drawing = Drawing {
+        count: 3_500,
+        size: 12.0,
+        ratio: 1.0,
+        noise: 0.0,
+        seed: 5,
+    };
+    let feature = Feature::find("crossing-squares").unwrap();
+    let cloud = feature.draw(&drawing).unwrap();
+    let mut parameters = Parameters::new(0.225, 0.113);
+    parameters.models = ModelName::AUTO.to_vec();
+    let outcome = (Pipeline::new(parameters).unwrap())
+        .reconstruct(&cloud.points)
+        .unwrap();
+    assert!(outcome.is_verified(), "{:?}", outcome.certificate.verdict());
+    assert_eq!(outcome.homology.betti_rational, [1, 0, 0]);
+    let census = &outcome.certificate.links.as_ref().unwrap().census;
+    assert_eq!(census.get(&LinkKind::RimThroughSheet), Some(&2));
 }
 
 #[test]

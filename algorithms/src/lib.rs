@@ -6,6 +6,7 @@ mod audit;
 mod balls;
 pub mod certificate;
 pub mod chart;
+pub mod creases;
 pub mod dimension;
 pub mod execute;
 pub mod homology;

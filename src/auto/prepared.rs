@@ -5,6 +5,7 @@ use super::alone;
 use super::input::Input;
 use crate::pipeline::{Outcome, Parameters, Pipeline, distinct_rows};
 use crosscap_algorithms::certificate::{CertificateOptions, CoverReport, Place, certify};
+use crosscap_algorithms::creases::Creases;
 use crosscap_algorithms::prepare::{Preparation, PreparationSummary, Remedies, Subspace};
 use crosscap_algorithms::tuning::PreparationTuning;
 use crosscap_backends::parallel::Threads;
@@ -247,7 +248,8 @@ fn lift(subspace: &Subspace, outcome: &mut Outcome) {
         outcome.report.dimension = vertices.dimension();
         outcome.mesh.vertices = vertices;
     }
-    for place in outcome.certificate.places_mut() {
+    let creases = outcome.creases.iter_mut().flat_map(Creases::places_mut);
+    for place in outcome.certificate.places_mut().chain(creases) {
         *place = subspace.lift(place);
     }
 }

@@ -9,6 +9,7 @@ use super::terminal::{Progress, say};
 use clap::Args;
 use crosscap::MetricName;
 use crosscap_algorithms::certificate::{CertificateOptions, SpecialPoint, certify};
+use crosscap_algorithms::creases::{CreaseLimits, Creases, creases};
 use crosscap_algorithms::homology::{LocalHomology, homology, local_homology};
 use crosscap_algorithms::pieces::{Pieces, pieces};
 use crosscap_backends::euclidean::EuclideanOracle;
@@ -107,6 +108,7 @@ impl Check {
         };
         let certificate = certify(mesh, &options);
         let pieces = pieces(mesh);
+        let creases = self.creases(mesh, points.as_ref())?;
         drop(progress);
         if let Some(path) = &self.normalization {
             let pieces = pieces.as_ref().map_err(|error| {
@@ -123,6 +125,7 @@ impl Check {
                 homology: &homology,
                 certificate: &certificate,
                 pieces: &pieces,
+                creases: creases.as_ref(),
             },
             local.as_ref(),
         )
@@ -175,6 +178,24 @@ impl Check {
             "{}: not verified{why}",
             self.mesh.display()
         )))
+    }
+
+    /// Where the surface bends sharply, which the points show.
+    fn creases(
+        &self,
+        mesh: &Mesh,
+        points: Option<&PointCloud<f64>>,
+    ) -> Result<Option<Creases>, Failure> {
+        let Some(points) = points else {
+            return Ok(None);
+        };
+        let threads = Threads::new(0)?;
+        Ok(Some(creases(
+            mesh,
+            points,
+            &CreaseLimits::MEASURED,
+            &threads,
+        )?))
     }
 
     /// The points that the mesh declares, as it declares which edges are on curves.

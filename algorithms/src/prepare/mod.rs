@@ -30,5 +30,6 @@ pub use outliers::Outliers;
 pub use preparation::{Preparation, PreparationSummary, Remedies};
 pub use projection::Projection;
 pub use resolution::Resolution;
+pub(crate) use sheet_fit::SheetFit;
 pub use spacing::LocalSpacing;
 pub use subspace::Subspace;

@@ -65,6 +65,8 @@ pub struct RimTuning {
     pub missing: f64,
     /// Greatest curvature of the parabola, in units of one over the radius.
     pub bend: f64,
+    /// Points that a sheet would have about the end before it has one, at most: that many are missing by chance in one of e^6 places.
+    pub open: f64,
 }
 
 impl RimTuning {
@@ -72,6 +74,7 @@ impl RimTuning {
     pub const MEASURED: Self = Self {
         missing: 10.0,
         bend: 3.0,
+        open: 6.0,
     };
 }
 

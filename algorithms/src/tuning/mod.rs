@@ -128,8 +128,12 @@ pub struct EndTuning {
     /// A point of a curve is an end when the middle of the curve within the radius is off by more than this;
     /// it is 0.5 at the end of a straight curve, and 0 inside.
     pub shift: f64,
-    /// Radii of the balls in which a model is asked, one after another until it answers.
-    pub radii: [f64; 5],
+    /// Radii of the balls in which a model is asked, one after another until it answers. The last is smaller than the first: where a
+    /// surface is narrow, wide balls hold corners and curves that no model of an end knows.
+    pub radii: [f64; 6],
+    /// How far behind the outermost point of a curve another one is that balls are laid about as well, in eps. Where a plate of 12
+    /// spacings stood through another, its ends were 0.5 eps inside, and the ball about the outermost point held the rim of the other one.
+    pub behind: f64,
     /// Widest ball, where a model asks for a wider one.
     pub widest: f64,
     /// A model that needs a wider ball gets one wider by this factor than it asks for.
@@ -154,7 +158,8 @@ impl EndTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         shift: 0.3,
-        radii: [1.0, 1.4, 2.0, 2.8, 4.0],
+        radii: [1.0, 1.4, 2.0, 2.8, 4.0, 0.7],
+        behind: 0.5,
         widest: 5.0,
         spare: 1.08,
         off_center: 0.15,
