@@ -5,6 +5,7 @@ use crosscap::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap::prelude::*;
 use crosscap_algorithms::certificate::LinkKind;
 use crosscap_algorithms::singularity::ModelName;
+use crosscap_algorithms::surfaces::{Drawing, Feature};
 use crosscap_core::squared_distance;
 
 struct Case {
@@ -18,7 +19,7 @@ struct Case {
     links: &'static [(LinkKind, Option<usize>)],
 }
 
-const CASES: [Case; 11] = [
+const CASES: [Case; 13] = [
     Case {
         surface: "three_spheres",
         points: 60_000,
@@ -127,6 +128,24 @@ const CASES: [Case; 11] = [
         betti: [1, 0, 0],
         links: &[(LinkKind::DoubleEnd, Some(6)), (LinkKind::Triple, Some(1))],
     },
+    Case {
+        surface: "book_5",
+        points: 8_000,
+        eps: 0.236,
+        dl: 0.0944,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::BookEnd, Some(2)), (LinkKind::Book, None)],
+    },
+    Case {
+        surface: "plate_on_plate",
+        points: 5_000,
+        eps: 0.219,
+        dl: 0.11,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::SideSheetEnd, Some(2))],
+    },
 ];
 
 fn reconstruct(case: &Case, seed: u64, models: &[ModelName]) -> Outcome {
@@ -191,6 +210,29 @@ fn points_are_in_their_places(case: &Case, outcome: &Outcome) {
     }
 }
 
+/// A plate that stands through another: the double curve ends inside that one, two and a half radii from its rim.
+#[test]
+fn a_plate_through_the_middle_of_another() {
+    let drawing = Drawing {
+        count: 3_500,
+        size: 12.0,
+        ratio: 1.0,
+        noise: 0.0,
+        seed: 5,
+    };
+    let feature = Feature::find("crossing-squares").unwrap();
+    let cloud = feature.draw(&drawing).unwrap();
+    let mut parameters = Parameters::new(0.225, 0.113);
+    parameters.models = ModelName::AUTO.to_vec();
+    let outcome = (Pipeline::new(parameters).unwrap())
+        .reconstruct(&cloud.points)
+        .unwrap();
+    assert!(outcome.is_verified(), "{:?}", outcome.certificate.verdict());
+    assert_eq!(outcome.homology.betti_rational, [1, 0, 0]);
+    let census = &outcome.certificate.links.as_ref().unwrap().census;
+    assert_eq!(census.get(&LinkKind::RimThroughSheet), Some(&2));
+}
+
 #[test]
 fn pinch_points_come_undone() {
     let case = CASES.iter().find(|c| c.surface == "cross_cap").unwrap();
@@ -208,6 +250,28 @@ fn pinch_points_come_undone() {
         text.contains("in one arc between two pinch points"),
         "{text}"
     );
+}
+
+/// Both ends of a short curve are within the reach over which ends are joined. Joined to each other they made a flat circle of it.
+#[test]
+fn a_segment_of_three_landmarks_is_no_circle() {
+    let feature = Feature::find("curve-above").unwrap();
+    let drawing = Drawing {
+        count: 800,
+        size: 9.0,
+        ratio: 1.0,
+        noise: 0.0,
+        seed: 3,
+    };
+    let cloud = feature.draw(&drawing).unwrap();
+    let parameters = Parameters {
+        models: ModelName::AUTO.to_vec(),
+        ..Parameters::new(0.71, 0.355)
+    };
+    let mut pipeline = Pipeline::new(parameters).unwrap();
+    let outcome = pipeline.reconstruct(&cloud.points).unwrap();
+    assert!(outcome.is_verified(), "{}", outcome.certificate);
+    assert_eq!(outcome.homology.betti_rational, [2, 0, 0]);
 }
 
 #[test]

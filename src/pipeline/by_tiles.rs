@@ -74,6 +74,8 @@ impl Pipeline {
             homology: judged.homology,
             certificate: judged.certificate,
             pieces: judged.pieces,
+            // They are read from all points.
+            creases: None,
             special_points: judged.special_points,
             report: Report {
                 chart_distortion: watched.distortion(),

@@ -1,6 +1,6 @@
 //! The stages of a reconstruction, one after another.
 
-use super::making::{Maker, Triangulated};
+use super::making::{Judged, Maker, Triangulated};
 use super::mesh::{AllRows, failures};
 use super::prepared::{Input, Prepared};
 use super::progress::Progress;
@@ -10,6 +10,7 @@ use super::{Outcome, Parameters, Parts, Pipeline, Report, Stage};
 use crate::spaces::{Neighborhoods, custom, positions};
 use crate::watched::{Distortion, Watched};
 use crosscap_algorithms::certificate::Verdict;
+use crosscap_algorithms::creases::{CreaseLimits, Creases, creases};
 use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::neighborhood::{
     FlatRadius, NearestCount, NeighborhoodPolicy, PolicyOracle, Surroundings,
@@ -73,6 +74,7 @@ impl Pipeline {
         };
         Ok(Outcome {
             failures,
+            creases: parts.creases(&prepared, &judged, &threads)?,
             homology: judged.homology,
             certificate: judged.certificate,
             pieces: judged.pieces,
@@ -94,6 +96,20 @@ impl Pipeline {
 }
 
 impl Parts {
+    /// The creases of a mesh that is verified, where there are coordinates to tell them by.
+    fn creases(
+        &self,
+        prepared: &Prepared<'_>,
+        judged: &Judged,
+        threads: &Threads,
+    ) -> Result<Option<Creases>, Error> {
+        if prepared.given.is_some() || !judged.certificate.verdict().is_verified() {
+            return Ok(None);
+        }
+        let cloud = &prepared.engines.cloud;
+        creases(&judged.mesh, cloud, &CreaseLimits::MEASURED, threads).map(Some)
+    }
+
     /// The space of the analysis.
     fn space<'g>(&'g self, prepared: &'g Prepared<'_>) -> Space<'g, f64> {
         let space = match (prepared.given, &self.analysis_metric) {

@@ -1,5 +1,6 @@
 //! Fifth level: mesh and points are near each other, both ways.
 
+use super::chords::Chords;
 use super::distance::Products;
 use super::faithful::Search;
 use super::geometry::corners;
@@ -274,6 +275,30 @@ pub(super) fn check(
         }
         if !within(triangle_off, off_limit) {
             off.push(Place::Triangle(t));
+        }
+    }
+    // edges that the points are beyond a gap from, where the surface goes another way
+    let chords = Chords {
+        search,
+        points,
+        cloud: &cloud,
+    };
+    for (e, &ends) in search.incidence.edges.iter().enumerate() {
+        if search.incidence.at_edge(e).len() < 2 {
+            continue;
+        }
+        let [a, b] = ends.map(|v| mesh.vertices.point(v as usize));
+        (place.iter_mut().zip(a.iter().zip(b))).for_each(|(x, (p, q))| *x = 0.5 * (p + q));
+        let beyond = ends.map(|v| search.gap_at_vertex(v));
+        let away = nearest(&place).map_or(0.0, |n| n.1.sqrt());
+        if away <= beyond[0].max(beyond[1]) + 4.0 * options.noise {
+            continue;
+        }
+        let dl = near(a);
+        let height = chords.height(ends).map_or(0.0, |height| height / dl);
+        if !within(height, limits.off_plane + 4.0 * options.noise / dl) {
+            off.push(Place::Edge(ends));
+            off_values.push(height);
         }
     }
     let distances = Distances::of(values);

@@ -18,6 +18,7 @@
 
 mod bends;
 mod by_distances;
+mod chords;
 mod cover;
 mod crossing;
 mod display;

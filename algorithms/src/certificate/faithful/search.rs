@@ -215,7 +215,7 @@ impl<'a> Search<'a> {
         Evenness::of(
             measures,
             self.points(),
-            Evenness::is_clustered(self.nearest()),
+            Evenness::clustering(self.nearest()),
         )
     }
 
