@@ -1,6 +1,6 @@
 //! Points that were taken out of tiles.
 
-use super::tile::CloudRow;
+use super::row::CloudRow;
 use crosscap_core::{Error, PointCloud};
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,8 @@
 //! Tiles that are held by this process.
 
 use super::question::{Answer, Question, Tiles};
-use super::tile::{CloudRow, Tile};
+use super::row::CloudRow;
+use super::tile::Tile;
 use super::tiling::{TileId, Tiling};
 use crate::execute::{self, Execute};
 use crate::landmarks::random_ranks;

@@ -15,21 +15,25 @@
 //! die and be replaced. Curves are not in here: whether a ball is 2-dimensional is decided from sums over a tree of the
 //! whole cloud, whose last bits are those of the tree, and fits are made in an order that the mean of all candidates decides.
 
+mod answer;
 mod cells;
 mod choice;
 mod gathered;
 mod greedy;
 mod memory;
 mod question;
+mod row;
 mod tile;
 mod tiling;
 
 #[cfg(test)]
 mod tests;
 
+pub use answer::halo;
 pub use choice::landmarks;
 pub use gathered::Gathered;
 pub use memory::TilesInMemory;
-pub use question::{Answer, BehindQuestion, CellQuestion, Question, Tiles, halo};
-pub use tile::{CloudRow, Tile};
+pub use question::{Answer, BehindQuestion, CellQuestion, Question, Tiles};
+pub use row::CloudRow;
+pub use tile::Tile;
 pub use tiling::{Bounds, TileId, Tiling};

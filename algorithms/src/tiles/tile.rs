@@ -1,17 +1,10 @@
 //! The points of a tile and of its halo.
 
 use super::gathered::Gathered;
+use super::row::CloudRow;
 use super::tiling::Bounds;
 use crate::balls::BallTree;
 use crosscap_core::{Error, PointCloud, Row, Table, squared_distance};
-use serde::{Deserialize, Serialize};
-
-crosscap_core::id! {
-    /// A row of the whole cloud. In a tile a [`Row`] is a row of the tile alone.
-    #[derive(Serialize, Deserialize)]
-    #[serde(transparent)]
-    pub struct CloudRow(u32);
-}
 
 /// Squared distances that are summed in another order differ by less than this share.
 pub(super) const ROUNDING: f64 = 1e-12;
