@@ -252,6 +252,28 @@ fn pinch_points_come_undone() {
     );
 }
 
+/// Both ends of a short curve are within the reach over which ends are joined. Joined to each other they made a flat circle of it.
+#[test]
+fn a_segment_of_three_landmarks_is_no_circle() {
+    let feature = Feature::find("curve-above").unwrap();
+    let drawing = Drawing {
+        count: 800,
+        size: 9.0,
+        ratio: 1.0,
+        noise: 0.0,
+        seed: 3,
+    };
+    let cloud = feature.draw(&drawing).unwrap();
+    let parameters = Parameters {
+        models: ModelName::AUTO.to_vec(),
+        ..Parameters::new(0.71, 0.355)
+    };
+    let mut pipeline = Pipeline::new(parameters).unwrap();
+    let outcome = pipeline.reconstruct(&cloud.points).unwrap();
+    assert!(outcome.is_verified(), "{}", outcome.certificate);
+    assert_eq!(outcome.homology.betti_rational, [2, 0, 0]);
+}
+
 #[test]
 fn models_compete() {
     for case in &CASES[1..4] {

@@ -28,6 +28,8 @@ pub mod singularity;
 pub mod space;
 mod spectrum;
 pub mod stratify;
+mod stretch;
 pub mod surfaces;
+pub mod tiles;
 pub mod triangulate;
 pub mod tuning;

@@ -7,6 +7,7 @@ use super::output;
 use super::points::PointArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
+use crosscap::MetricName;
 use crosscap_algorithms::certificate::{CertificateOptions, SpecialPoint, certify};
 use crosscap_algorithms::creases::{CreaseLimits, Creases, creases};
 use crosscap_algorithms::homology::{LocalHomology, homology, local_homology};
@@ -88,10 +89,15 @@ impl Check {
         let progress = Progress::new("checking");
         let known = file.extras.metadata.get("dl").and_then(Value::as_f64);
         let special_points = self.declared(&file.extras.metadata)?;
+        let scale = match (&points, self.dl) {
+            (Some(points), None) => metric_of(&file.extras.metadata).separation_scale(points)?,
+            _ => None,
+        };
         let options = CertificateOptions {
             special_points: &special_points,
             points: points.as_ref(),
             landmark_separation: self.dl.or(known.filter(|&dl| dl > 0.0)),
+            separation_scale: scale.as_deref(),
             closed: self.closed,
             ..CertificateOptions::default()
         };
@@ -288,4 +294,10 @@ fn told(local: &LocalHomology, mesh: &Mesh) -> String {
         betti(first.betti_rational),
         betti(first.betti_mod2)
     )
+}
+
+/// The metric that a mesh was made with, as its file tells; straight lines where it does not.
+fn metric_of(metadata: &Value) -> MetricName {
+    let name = metadata.pointer("/spaces/metric").and_then(Value::as_str);
+    name.and_then(|name| name.parse().ok()).unwrap_or_default()
 }

@@ -118,7 +118,8 @@ pub struct Outcome {
     pub certificate: Certificate,
     /// What the surface is, where the crossing can be undone.
     pub pieces: Result<Pieces, PiecesError>,
-    /// Where the surface bends sharply; `None` where the mesh is not verified, and where distances were the only input.
+    /// Where the surface bends sharply; `None` where the mesh is not verified, where distances were the only input, and
+    /// where the points are in tiles.
     pub creases: Option<Creases>,
     /// Counts and times.
     pub report: Report,

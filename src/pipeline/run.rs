@@ -1,10 +1,11 @@
 //! The stages of a reconstruction, one after another.
 
-use super::making::{Judged, Making, Triangulated};
-use super::mesh::failures;
+use super::making::{Judged, Maker, Triangulated};
+use super::mesh::{AllRows, failures};
 use super::prepared::{Input, Prepared};
 use super::progress::Progress;
 use super::report::PluginNames;
+use super::whole::Whole;
 use super::{Outcome, Parameters, Parts, Pipeline, Report, Stage};
 use crate::spaces::{Neighborhoods, custom, positions};
 use crate::watched::{Distortion, Watched};
@@ -54,19 +55,22 @@ impl Pipeline {
 
         progress.enter(Stage::Landmarks);
         let producer = stratifier.cut(&ground, &analysis)?;
-        let making = Making {
+        let whole = Whole {
             parts,
             prepared: &prepared,
             producer: producer.as_ref(),
             chart: &watched,
-            places: producer.places().unwrap_or(&prepared.rows.cloud),
+            rows: AllRows {
+                places: producer.places().unwrap_or(&prepared.rows.cloud),
+                kept: &prepared.rows.kept,
+            },
         };
-        let (made, judged) = making.mesh(&mut progress)?;
+        let (made, judged) = whole.mesh(&mut progress)?;
         // A star that stayed open in its own chart may be complete all the same; whether it is, the
         // certificate has seen edge by edge and link by link.
         let failures = match judged.certificate.verdict() {
             Verdict::Verified => Vec::new(),
-            _ => failures(&made.triangulation, &made.waist, &prepared.rows.kept),
+            _ => failures(&made.triangulation, &made.waist, whole.rows()),
         };
         Ok(Outcome {
             failures,
@@ -179,9 +183,6 @@ impl Parts {
     /// What works on these points, by its own name.
     fn plugins(&self, ground: &Ground<'_, f64>) -> PluginNames {
         let space = &ground.analyzer.space;
-        let front = self.front(ground.chart);
-        let literal = self.triangulator.is_none();
-        let part = |name: &str| literal.then(|| name.to_string());
         PluginNames {
             metric: space.metric().name().into(),
             oracle: space.oracle().name().into(),
@@ -190,12 +191,23 @@ impl Parts {
                 ChartSpace::Metric(space) => space.metric().name().into(),
             },
             estimator: (!self.parameters.surface).then(|| ground.analyzer.estimator.name().into()),
+            ..self.makers(ground.chart)
+        }
+    }
+
+    /// What works on waists and makes them, by its own name.
+    pub(super) fn makers(&self, chart: &dyn LocalChart) -> PluginNames {
+        let front = self.front(chart);
+        let literal = self.triangulator.is_none();
+        let part = |name: &str| literal.then(|| name.to_string());
+        PluginNames {
             stratifier: self.stratifier.name().into(),
             selector: self.selector.name().into(),
             triangulator: self.triangulator(&front).name().into(),
             chart: part(front.chart.name()),
             compatibility: part(front.test.name()),
             rule: part(front.rule.name()),
+            ..PluginNames::default()
         }
     }
 

@@ -68,3 +68,14 @@ pub struct Creases {
     #[serde(skip)]
     pub vertex_face: Vec<Option<u32>>,
 }
+
+impl Creases {
+    /// Every place that is told, to be told in other coordinates.
+    pub fn places_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        let along = self
+            .creases
+            .iter_mut()
+            .flat_map(|crease| &mut crease.places);
+        along.chain(self.corners.iter_mut().map(|corner| &mut corner.place))
+    }
+}

@@ -54,10 +54,17 @@ impl BookEnd {
         at_least(2 * PATCH_POINTS, local)?;
         let all: Vec<Vector3<f64>> = vectors(local);
         let (fitted, radius) = (local.fitted, local.radius);
-        let first = PageSheets::read(&all, fitted, radius, |_| true);
+        let first = PageSheets::read(&all, fitted, radius, &self.tuning.pages, |_| true);
         first
             .and_then(|book| self.ended(book, &all, local))
-            .or_else(|_| self.ended(PageSheets::crossing(&all, fitted, radius)?, &all, local))
+            .or_else(|_| {
+                let pages = &self.tuning.pages;
+                self.ended(
+                    PageSheets::crossing(&all, fitted, radius, pages)?,
+                    &all,
+                    local,
+                )
+            })
     }
 
     /// The end of the curve of given pages.

@@ -1,5 +1,6 @@
 //! When the models of the ends of curves, and of curves by themselves, believe a fit.
 
+use super::PagesTuning;
 use serde::Serialize;
 
 /// What the models of the ends of curves have in common.
@@ -82,6 +83,8 @@ impl RimTuning {
 pub struct BookTuning {
     /// What it has in common with ends of curves: the share of points astray.
     pub end: CurveEndTuning,
+    /// How its pages are read.
+    pub pages: PagesTuning,
     /// Farthest that the curve is from the middle of the points, in radii: farther out pages are missing in the ball.
     pub off_center: f64,
     /// Least share of the points that a page holds.
@@ -98,6 +101,7 @@ impl BookTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         end: CurveEndTuning::MEASURED,
+        pages: PagesTuning::MEASURED,
         off_center: 0.35,
         share: 0.04,
         step: 0.6,
@@ -111,6 +115,8 @@ impl BookTuning {
 pub struct BookEndTuning {
     /// What it has in common with other ends.
     pub end: CurveEndTuning,
+    /// How its pages are read.
+    pub pages: PagesTuning,
     /// Boundaries of the sheets.
     pub rim: RimTuning,
     /// Least share of the points that each page holds.
@@ -132,6 +138,7 @@ impl BookEndTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         end: CurveEndTuning::MEASURED,
+        pages: PagesTuning::MEASURED,
         rim: RimTuning::MEASURED,
         share: 0.03,
         sine: 0.34,

@@ -7,6 +7,7 @@
 mod ends;
 mod front;
 mod models;
+mod pages;
 mod preparation;
 
 pub use ends::{BookEndTuning, BookTuning, CurveEndTuning, PinchPointTuning, RimTuning};
@@ -15,12 +16,14 @@ pub use models::{
     BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,
     TwoPlanesTuning, YJunctionTuning,
 };
+pub use pages::PagesTuning;
 
 pub use preparation::{
     NoiseTuning, OutlierTuning, PreparationTuning, ProjectionTuning, ResolutionTuning,
+    SubspaceTuning,
 };
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// All of them. [`Tuning::MEASURED`] is what the program runs with.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -184,6 +187,13 @@ pub struct SkeletonTuning {
     pub end_separation: f64,
     /// A chain is joined to a corner, or two free ends to each other, over at most this.
     pub join: f64,
+    /// A curve without a surface is joined to a corner or to another end over no longer stretch without points than this, unless
+    /// chance explains it.
+    pub bare_gap: f64,
+    /// Probability of such a stretch, beside the spacings of the curve, below which chance does not.
+    pub bare_chance: f64,
+    /// Points this far from the straight way between two places lead along it.
+    pub beside_way: f64,
     /// How many separations along a curve are tried: the closing gap of a closed curve depends on the
     /// separation, and long edges are the bad ones.
     pub stretches: usize,
@@ -202,6 +212,9 @@ impl SkeletonTuning {
         bridge: 2.0,
         end_separation: 0.6,
         join: 3.0,
+        bare_gap: 1.0,
+        bare_chance: 1e-3,
+        beside_way: 0.5,
         stretches: 16,
         stretch_step: 0.025,
         label_spacing: 0.2,
@@ -209,7 +222,7 @@ impl SkeletonTuning {
 }
 
 /// What decides which landmarks are in the neighborhood of which. Shares are of dl unless said otherwise.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellTuning {
     /// Labels are believed up to this share of the radius of the fit.
     pub label_reach: f64,
