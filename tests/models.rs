@@ -5,6 +5,7 @@ use crosscap::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap::prelude::*;
 use crosscap_algorithms::certificate::LinkKind;
 use crosscap_algorithms::singularity::ModelName;
+use crosscap_algorithms::surfaces::{Drawing, Feature};
 use crosscap_core::squared_distance;
 
 struct Case {
