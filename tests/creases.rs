@@ -21,12 +21,12 @@ fn counted(name: &str, count: usize, [eps, dl]: [f64; 2]) -> [usize; 3] {
 
 #[test]
 fn what_has_edges_is_told_by_them() {
-    assert_eq!(counted("can", 4000, [0.2, 0.17]), [3, 2, 0]);
-    assert_eq!(counted("octahedron", 3000, [0.15, 0.12]), [8, 12, 6]);
+    assert_eq!(counted("can", 4000, [0.25, 0.15]), [3, 2, 0]);
+    assert_eq!(counted("octahedron", 4000, [0.2, 0.1]), [8, 12, 6]);
 }
 
 #[test]
 fn what_has_none_is_one_face() {
     assert_eq!(counted("sphere", 2000, [0.3, 0.25]), [1, 0, 0]);
-    assert_eq!(counted("klein_r5", 5000, [1.0, 0.35]), [1, 0, 0]);
+    assert_eq!(counted("torus", 4000, [0.6, 0.4]), [1, 0, 0]);
 }

@@ -210,29 +210,6 @@ fn points_are_in_their_places(case: &Case, outcome: &Outcome) {
     }
 }
 
-/// A plate that stands through another: the double curve ends inside that one, two and a half radii from its rim.
-#[test]
-fn a_plate_through_the_middle_of_another() {
-    let drawing = Drawing {
-        count: 3_500,
-        size: 12.0,
-        ratio: 1.0,
-        noise: 0.0,
-        seed: 5,
-    };
-    let feature = Feature::find("crossing-squares").unwrap();
-    let cloud = feature.draw(&drawing).unwrap();
-    let mut parameters = Parameters::new(0.225, 0.113);
-    parameters.models = ModelName::AUTO.to_vec();
-    let outcome = (Pipeline::new(parameters).unwrap())
-        .reconstruct(&cloud.points)
-        .unwrap();
-    assert!(outcome.is_verified(), "{:?}", outcome.certificate.verdict());
-    assert_eq!(outcome.homology.betti_rational, [1, 0, 0]);
-    let census = &outcome.certificate.links.as_ref().unwrap().census;
-    assert_eq!(census.get(&LinkKind::RimThroughSheet), Some(&2));
-}
-
 #[test]
 fn pinch_points_come_undone() {
     let case = CASES.iter().find(|c| c.surface == "cross_cap").unwrap();

@@ -1,10 +1,12 @@
 //! Corners: where three creases and more meet.
 
 use super::ground::Ground;
-use super::seams::Seam;
 use super::trails::{Side, Way};
 use super::{Corner, CreaseEnd};
 use std::collections::BTreeMap;
+
+/// The sides at both ends of a seam, none of a closed one.
+type Ends = Option<[Side; 2]>;
 
 /// The corners of a mesh, and which triangles of three faces are at each.
 pub(super) struct Corners {
@@ -13,11 +15,11 @@ pub(super) struct Corners {
 }
 
 impl Corners {
-    /// Of the seams that are creases, and those that are parts of corners: triangles of three faces that one of these joins are at one
-    /// corner.
-    pub(super) fn of(ground: &Ground<'_>, creases: &[Seam], contacts: &[Seam]) -> Self {
-        let triangles = |seam: &Seam| -> Vec<u32> {
-            let ends = seam.ends.iter().flatten();
+    /// Of the ends of seams that are creases, and of those that are parts of corners: triangles of three faces that one of these joins are
+    /// at one corner.
+    pub(super) fn of(ground: &Ground<'_>, creases: &[Ends], contacts: &[Ends]) -> Self {
+        let triangles = |ends: &Ends| -> Vec<u32> {
+            let ends = ends.iter().flatten();
             ends.filter(|side| side.way == Way::Corner)
                 .filter_map(|side| side.triangle)
                 .collect()

@@ -13,12 +13,12 @@ use crosscap_core::squared_distance;
 const EDGES_AT_ONCE: usize = 32;
 
 /// A curve in which two faces meet.
-pub(super) struct Seam {
+struct Seam {
     faces: [u32; 2],
     /// Where the sheets of the two faces meet, in order, from edge to edge.
     meetings: Vec<Meeting>,
     /// For an arc the sides at both ends.
-    pub(super) ends: Option<[Side; 2]>,
+    ends: Option<[Side; 2]>,
     /// Length of the line through the middles of the edges, unit of the data.
     length: f64,
     /// Number of edges.
@@ -88,7 +88,8 @@ impl<'g, 'a> Seams<'g, 'a> {
         let (contacts, mut seams): (Vec<Seam>, Vec<Seam>) =
             all.into_iter().partition(|s| self.is_contact(s));
         seams.sort_by_key(|s| s.ends.is_some());
-        let corners = Corners::of(self.ground, &seams, &contacts);
+        let ends = |seams: &[Seam]| seams.iter().map(|s| s.ends).collect::<Vec<_>>();
+        let corners = Corners::of(self.ground, &ends(&seams), &ends(&contacts));
         let creases = seams.into_iter().map(|seam| {
             let ends = seam.ends.map(|ends| ends.map(|side| corners.end(side)));
             crease(seam, ends)
