@@ -10,10 +10,11 @@ impl fmt::Display for Creases {
         }
         write!(
             f,
-            "{}, {} ({}), {}",
+            "{}, {} ({}; a bend of a radius below {} counts as one), {}",
             counted(self.faces, "face"),
             counted(self.creases.len(), "crease"),
             angles(&self.creases),
+            figures(self.resolution),
             counted(self.corners.len(), "corner")
         )
     }
@@ -28,6 +29,12 @@ fn angles(creases: &[Crease]) -> String {
         true => format!("{least} degrees"),
         false => format!("{least} to {most} degrees"),
     }
+}
+
+/// A positive number to two figures.
+fn figures(x: f64) -> f64 {
+    let scale = 10_f64.powi(1 - x.log10().floor() as i32);
+    (x * scale).round() / scale
 }
 
 /// A number in words up to twelve, with what is counted.

@@ -64,6 +64,8 @@ pub struct Creases {
     pub creases: Vec<Crease>,
     /// The corners.
     pub corners: Vec<Corner>,
+    /// Radius below which a bend is not told from a crease, unit of the data: two edges of the mesh.
+    pub resolution: f64,
     /// For each vertex of the mesh its face; none on curves in which sheets cross or meet.
     #[serde(skip)]
     pub vertex_face: Vec<Option<u32>>,

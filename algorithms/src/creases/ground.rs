@@ -5,6 +5,7 @@ use crate::balls::BallTree;
 use crate::execute::{self, Execute};
 use crate::prepare::SheetFit;
 use crosscap_core::{Mesh, PointCloud};
+use petgraph::unionfind::UnionFind;
 
 /// A mesh, walked from vertex to vertex along edges at which no more than two triangles meet.
 pub(super) struct Ground<'a> {
@@ -171,28 +172,49 @@ impl<'a> Ground<'a> {
     }
 }
 
-/// Edges of a mesh at which no more than two triangles meet, and which vertices are on others, or on no triangle.
+/// Edges of a mesh at which no more than two triangles meet, and which vertices are on others, on no triangle, or where sheets
+/// cross in a point.
 fn edges(mesh: &Mesh) -> (Vec<[u32; 2]>, Vec<bool>) {
     let complex = &mesh.complex;
-    let mut all: Vec<[u32; 2]> = (complex.triangles.iter())
-        .flat_map(|&[a, b, c]| [[a, b], [b, c], [a, c]])
-        .map(|[a, b]| [a.min(b), a.max(b)])
+    let mut all: Vec<([u32; 2], u32)> = (complex.triangles.iter().zip(0..))
+        .flat_map(|(&[a, b, c], t)| [[a, b], [b, c], [a, c]].map(|e| (e, t)))
+        .map(|([a, b], t)| ([a.min(b), a.max(b)], t))
         .collect();
     all.sort_unstable();
     let mut aside = vec![true; complex.vertices];
-    all.iter()
-        .flatten()
-        .for_each(|&v| aside[v as usize] = false);
+    for v in complex.triangles.iter().flatten() {
+        aside[*v as usize] = false;
+    }
     let curves = complex.curve_edges.iter().filter(|e| e.cells > 2);
     curves
         .flat_map(|e| e.ends)
         .for_each(|v| aside[v as usize] = true);
     let mut edges = Vec::with_capacity(all.len() / 2);
-    for same in all.chunk_by(|a, b| a == b) {
-        match same.len() {
-            1 | 2 => edges.push(same[0]),
-            _ => same[0].iter().for_each(|&v| aside[v as usize] = true),
+    // Corners of triangles that hang together about their vertex.
+    let mut fans = UnionFind::<u32>::new(3 * complex.triangles.len());
+    let corner = |t: u32, v: u32| {
+        let at = complex.triangles[t as usize].iter().position(|&x| x == v);
+        3 * t + at.unwrap_or(0) as u32
+    };
+    for same in all.chunk_by(|a, b| a.0 == b.0) {
+        let ends = same[0].0;
+        match same {
+            [_] => edges.push(ends),
+            &[(_, s), (_, t)] => {
+                edges.push(ends);
+                for v in ends {
+                    fans.union(corner(s, v), corner(t, v));
+                }
+            }
+            _ => ends.iter().for_each(|&v| aside[v as usize] = true),
         }
+    }
+    // A vertex of two fans is a point in which sheets cross.
+    let mut fan = vec![u32::MAX; complex.vertices];
+    for (&v, corner) in complex.triangles.iter().flatten().zip(0..) {
+        let (own, root) = (&mut fan[v as usize], fans.find(corner));
+        aside[v as usize] |= *own != u32::MAX && *own != root;
+        *own = root;
     }
     (edges, aside)
 }

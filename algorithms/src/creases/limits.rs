@@ -21,8 +21,15 @@ pub struct CreaseLimits {
     pub flat: f64,
     /// Widest angle between two sheets that is a crease, degrees: 180 is none.
     pub widest: f64,
+    /// At a crease the surface turns by at least this many times what both sheets turn by within an edge beside it: a thin tube turns everywhere.
+    pub bends: f64,
     /// Least share of the places along a seam that have such an angle.
     pub share: f64,
+    /// At a crease the points next to it are on the sheets of its sides: the one in the middle is off the nearer of them at most this many
+    /// times what points elsewhere are off theirs, and `inside` median edges more. At a bend they are inside.
+    pub rounded: f64,
+    /// See [`rounded`](Self::rounded).
+    pub inside: f64,
     /// A seam between corners that is no longer than this, in median edges of the mesh, is part of a corner.
     pub contact: f64,
     /// Fewest places of a crease.
@@ -43,7 +50,10 @@ impl CreaseLimits {
         regular: 1.6,
         flat: 0.005,
         widest: 160.0,
+        bends: 2.0,
         share: 0.6,
+        rounded: 2.0,
+        inside: 0.02,
         contact: 1.6,
         places: 4,
         seeds: 3,

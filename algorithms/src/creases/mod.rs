@@ -19,7 +19,7 @@
 //! let halves = squares.flat_map(|k| [[k, k + 1, k + 13], [k + 1, k + 13, k + 14]]);
 //! let mesh = Mesh::new(Complex::new(169, halves.collect(), vec![])?, cloud.clone(), vec![-1; 169])?;
 //! let found = creases(&mesh, &cloud, &CreaseLimits::MEASURED, &Serial)?;
-//! assert_eq!(found.to_string(), "two faces, one crease (90 degrees), no corner");
+//! assert!(found.to_string().starts_with("two faces, one crease (90 degrees;"));
 //! # Ok::<(), crosscap_core::Error>(())
 //! ```
 

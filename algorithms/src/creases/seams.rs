@@ -1,6 +1,6 @@
 //! Seams: where two faces meet, edge by edge of the mesh.
 
-use super::angle::Meeting;
+use super::angle::{Meeting, middle};
 use super::corners::Corners;
 use super::faces::Faces;
 use super::ground::Ground;
@@ -11,6 +11,9 @@ use crosscap_core::squared_distance;
 
 /// Edges that a job takes at a time.
 const EDGES_AT_ONCE: usize = 32;
+
+/// Radius in edges of the mesh from which a bend is told from a crease.
+const RESOLVED: f64 = 2.0;
 
 /// A curve in which two faces meet.
 struct Seam {
@@ -44,8 +47,8 @@ impl<'g, 'a> Seams<'g, 'a> {
             |walk, k| Meeting::of(ground, parted[k], &faces.of, walk),
         );
         let seam = |Trail { edges, ends }| {
-            let middle = |&k: &u32| ground.mean(&parted[k as usize]);
-            let middles: Vec<Vec<f64>> = edges.iter().map(middle).collect();
+            let between = |&k: &u32| ground.mean(&parted[k as usize]);
+            let middles: Vec<Vec<f64>> = edges.iter().map(between).collect();
             let own = edges.iter().filter_map(|&k| meetings[k as usize].clone());
             Some(Seam {
                 faces: faces.parted(parted[*edges.first()? as usize])?,
@@ -77,9 +80,23 @@ impl<'g, 'a> Seams<'g, 'a> {
 
     fn is_sharp(&self, seam: &Seam) -> bool {
         let limits = self.ground.limits;
-        let sharp = |m: &&Meeting| m.angle <= limits.widest;
+        let sharp =
+            |m: &&Meeting| m.angle <= limits.widest && 180.0 - m.angle >= limits.bends * m.bend;
         let sharp = seam.meetings.iter().filter(sharp).count() as f64;
-        seam.edges >= limits.places && sharp >= limits.share * seam.edges as f64
+        seam.edges >= limits.places
+            && sharp >= limits.share * seam.edges as f64
+            && !self.is_rounded(seam)
+    }
+
+    /// Whether the points next to a seam are on neither of the sheets: a bend of a small radius, which the sheets on its sides do not
+    /// follow.
+    fn is_rounded(&self, seam: &Seam) -> bool {
+        let of = |which: fn(&Meeting) -> f64| {
+            let mut all: Vec<f64> = seam.meetings.iter().map(which).collect();
+            middle(&mut all)
+        };
+        let limits = self.ground.limits;
+        of(|m| m.beside) > limits.rounded * of(|m| m.usual) + limits.inside * self.ground.edge
     }
 
     /// The seams, none of which is smooth, as creases with the corners in which they end.
@@ -96,6 +113,7 @@ impl<'g, 'a> Seams<'g, 'a> {
         });
         Creases {
             faces: faces.count,
+            resolution: RESOLVED * self.ground.edge,
             creases: creases.collect(),
             vertex_face: faces.of.clone(),
             corners: corners.found,
