@@ -272,6 +272,9 @@ const NUMBERS: &[Number] = numbers! {
     Length skeleton.end_separation;
     Length skeleton.join out 0.0;
     Count skeleton.stretches out 1.0;
+    Length skeleton.bare_gap;
+    Length skeleton.bare_chance out 0.0;
+    Length skeleton.beside_way;
     Length skeleton.stretch_step;
     Length skeleton.label_spacing;
     Length cells.label_reach;

@@ -26,13 +26,35 @@ impl Conformal {
         rule: EdgeRule,
         threads: &Threads,
     ) -> Result<Self, Error> {
-        let spacing = LocalSpacing::by(points, threads)?;
-        let usual = spacing.median();
-        let scale: Vec<f64> = (spacing.values().iter())
-            .map(|s| (s / usual).max(LEAST_SCALE))
-            .collect();
+        let scale = in_usual_spacings(points, threads)?;
         let metric = threads.install(|| GeodesicMetric::conformal(points, rule, &scale))?;
         Ok(Self { metric, scale })
+    }
+}
+
+/// How many times the usual spacing that at each point is.
+fn in_usual_spacings(points: &EuclideanOracle<f64>, threads: &Threads) -> Result<Vec<f64>, Error> {
+    let spacing = LocalSpacing::by(points, threads)?;
+    let usual = spacing.median();
+    let scale = |s: &f64| (s / usual).max(LEAST_SCALE);
+    Ok(spacing.values().iter().map(scale).collect())
+}
+
+impl MetricName {
+    /// How many times the separation dl landmarks keep from each other at each point, where that follows the spacing of the
+    /// points: the conformal metric. `None` for the others, whose separation is the same everywhere.
+    ///
+    /// Whoever measures a mesh in landmark separations needs it: see
+    /// [`CertificateOptions::separation_scale`](crosscap_algorithms::certificate::CertificateOptions). O(n log n) for n points.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for too few points to have a spacing.
+    pub fn separation_scale(self, points: &PointCloud<f64>) -> Result<Option<Vec<f64>>, Error> {
+        if self != Self::Conformal {
+            return Ok(None);
+        }
+        let oracle = EuclideanOracle::new(points.clone())?;
+        in_usual_spacings(&oracle, &Threads::new(0)?).map(Some)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The built program, run as a user runs it.
 
-use crosscap_algorithms::surfaces::Random;
+use crosscap_algorithms::surfaces::{Drawing, Feature, Random};
 use crosscap_backends::files::{
     MeshExtras, PointOptions, read_indices, read_mesh, read_points, write_mesh, write_points,
 };
@@ -925,6 +925,32 @@ fn points_count_in_a_check() {
     room.run("check sphere.npz --points plane.csv")
         .expect(2)
         .complains("plane.csv: found points in R^2, expected R^3");
+}
+
+/// Where landmarks follow the spacing of the points, so does the check: a mesh that was verified is verified again.
+#[test]
+fn a_check_measures_in_the_lengths_that_a_mesh_was_made_with() {
+    let room = Room::new();
+    let drawing = Drawing {
+        count: 800,
+        size: 8.3,
+        ratio: 20.0,
+        noise: 0.0,
+        seed: 5,
+    };
+    let cloud = Feature::find("small-part").unwrap().draw(&drawing).unwrap();
+    write_points(room.path("p.npy"), &cloud.points).unwrap();
+    let dl = 1.7 * cloud.spacing;
+    let lengths = format!("--eps {} --dl {dl}", 2.0 * dl);
+    let spaced = "--metric conformal --graph-k 20 --surface --models two-planes";
+    room.run(&format!("reconstruct p.npy -o m.npz {lengths} {spaced}"))
+        .expect(0)
+        .says("Two spheres");
+    room.run("check m.npz --points p.npy").expect(0);
+    // One separation everywhere is what the mesh was not made with.
+    room.run(&format!("check m.npz --points p.npy --dl {dl}"))
+        .expect(1)
+        .says("input points far from the mesh");
 }
 
 #[test]

@@ -5,6 +5,7 @@ use crosscap::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap::prelude::*;
 use crosscap_algorithms::certificate::LinkKind;
 use crosscap_algorithms::singularity::ModelName;
+use crosscap_algorithms::surfaces::{Drawing, Feature};
 use crosscap_core::squared_distance;
 
 struct Case {
@@ -18,7 +19,7 @@ struct Case {
     links: &'static [(LinkKind, Option<usize>)],
 }
 
-const CASES: [Case; 11] = [
+const CASES: [Case; 13] = [
     Case {
         surface: "three_spheres",
         points: 60_000,
@@ -127,6 +128,24 @@ const CASES: [Case; 11] = [
         betti: [1, 0, 0],
         links: &[(LinkKind::DoubleEnd, Some(6)), (LinkKind::Triple, Some(1))],
     },
+    Case {
+        surface: "book_5",
+        points: 8_000,
+        eps: 0.236,
+        dl: 0.0944,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::BookEnd, Some(2)), (LinkKind::Book, None)],
+    },
+    Case {
+        surface: "plate_on_plate",
+        points: 5_000,
+        eps: 0.219,
+        dl: 0.11,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::SideSheetEnd, Some(2))],
+    },
 ];
 
 fn reconstruct(case: &Case, seed: u64, models: &[ModelName]) -> Outcome {
@@ -208,6 +227,28 @@ fn pinch_points_come_undone() {
         text.contains("in one arc between two pinch points"),
         "{text}"
     );
+}
+
+/// Both ends of a short curve are within the reach over which ends are joined. Joined to each other they made a flat circle of it.
+#[test]
+fn a_segment_of_three_landmarks_is_no_circle() {
+    let feature = Feature::find("curve-above").unwrap();
+    let drawing = Drawing {
+        count: 800,
+        size: 9.0,
+        ratio: 1.0,
+        noise: 0.0,
+        seed: 3,
+    };
+    let cloud = feature.draw(&drawing).unwrap();
+    let parameters = Parameters {
+        models: ModelName::AUTO.to_vec(),
+        ..Parameters::new(0.71, 0.355)
+    };
+    let mut pipeline = Pipeline::new(parameters).unwrap();
+    let outcome = pipeline.reconstruct(&cloud.points).unwrap();
+    assert!(outcome.is_verified(), "{}", outcome.certificate);
+    assert_eq!(outcome.homology.betti_rational, [2, 0, 0]);
 }
 
 #[test]

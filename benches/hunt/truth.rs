@@ -18,7 +18,8 @@ const TOO_FAR: f64 = 0.75;
 /// Standard deviations of the noise that are added.
 const SCATTER: f64 = 4.0;
 
-/// The largest distances both ways.
+/// The largest distances both ways, in landmark separations: where all lengths are in the spacing of the points, in that of the
+/// nearest point.
 pub struct Distance {
     /// From the mesh to the surface, in dl.
     out: f64,
@@ -73,13 +74,23 @@ pub fn distance(
         let [a, b] = e.ends.map(row);
         [a, b, b]
     }));
+    let scale = (outcome.report.parameters.spaces.metric).separation_scale(&cloud.points)?;
+    // what stands for dl about a place, as a share of it
+    let own = |place: &Spot| match &scale {
+        None => 1.0,
+        Some(scale) => {
+            let near = cloud.points.iter().map(|p| squared_distance(p, place));
+            let nearest = near.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+            nearest.map_or(1.0, |(row, _)| scale[row])
+        }
+    };
     let out = faces.iter().flat_map(samples).map(|place| {
         let near = places.iter().map(|p| squared_distance(p, &place));
-        near.fold(f64::INFINITY, f64::min)
+        near.fold(f64::INFINITY, f64::min).sqrt() / own(&place)
     });
     let back = places.iter().map(|p| {
         let near = faces.iter().map(|t| to_triangle(*p, *t));
-        near.fold(f64::INFINITY, f64::min)
+        near.fold(f64::INFINITY, f64::min).sqrt() / own(p)
     });
     let (out, back) = (out.fold(0.0, f64::max), back.fold(0.0, f64::max));
     let apart = EMPTY * cloud.spacing * (drawing.count as f64 / count as f64).sqrt();
@@ -88,8 +99,8 @@ pub fn distance(
     let ends = mesh.complex.curve_edges.iter().any(|e| e.cells == 1);
     let rim = if ends { RIM * cloud.thinnest / dl } else { 0.0 };
     Ok(Distance {
-        out: out.sqrt() / dl,
-        back: back.sqrt() / dl,
+        out: out / dl,
+        back: back / dl,
         allowed: [usual.hypot(apart / dl), usual],
         rim,
     })

@@ -1,7 +1,7 @@
 //! Arrays of NumPy from and to the types of Crosscap.
 
 use crate::refusal::bad_value;
-use crosscap_core::{Complex, CurveEdge, Error, Mesh, PointCloud};
+use crosscap_core::{Complex, CurveEdge, DimensionEstimate, Error, Mesh, PointCloud};
 use numpy::PyUntypedArrayMethods;
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -131,4 +131,25 @@ pub fn of_mesh<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyDict>
     let point_index = mesh.point_index.clone();
     arrays.set_item("point_index", PyArray1::from_vec(py, point_index))?;
     Ok(arrays)
+}
+
+/// Dimension, value before rounding and confidence at every point; -1 and NaN where there are none.
+pub fn of_estimates<'py>(
+    py: Python<'py>,
+    found: &[Option<DimensionEstimate>],
+) -> PyResult<Bound<'py, PyDict>> {
+    let whole = found
+        .iter()
+        .map(|e| e.as_ref().map_or(-1, |e| e.dimension as i64));
+    let value = found
+        .iter()
+        .map(|e| e.as_ref().map_or(f64::NAN, |e| e.value));
+    let sure = found
+        .iter()
+        .map(|e| e.as_ref().map_or(f64::NAN, |e| e.confidence));
+    let all = PyDict::new(py);
+    all.set_item("dimension", PyArray1::<i64>::from_vec(py, whole.collect()))?;
+    all.set_item("value", PyArray1::<f64>::from_vec(py, value.collect()))?;
+    all.set_item("confidence", PyArray1::<f64>::from_vec(py, sure.collect()))?;
+    Ok(all)
 }

@@ -15,6 +15,7 @@ mod points;
 mod reconstruct;
 mod refusal;
 mod run;
+mod tiles;
 
 use pyo3::prelude::*;
 
@@ -43,5 +44,12 @@ fn _crosscap(module: &Bound<'_, PyModule>) -> PyResult<()> {
         reconstruct::reconstruct_distances,
         module
     )?)?;
+    module.add_function(wrap_pyfunction!(tiles::random_ranks, module)?)?;
+    module.add_function(wrap_pyfunction!(tiles::reconstruct_tiles, module)?)?;
+    module.add_function(wrap_pyfunction!(tiles::tile_answer, module)?)?;
+    module.add_function(wrap_pyfunction!(tiles::tile_dimension, module)?)?;
+    module.add_function(wrap_pyfunction!(tiles::tile_halo, module)?)?;
+    module.add_function(wrap_pyfunction!(tiles::tile_members, module)?)?;
+    module.add_function(wrap_pyfunction!(tiles::tiling, module)?)?;
     Ok(())
 }

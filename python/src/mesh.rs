@@ -6,6 +6,8 @@ use crosscap::command::convert::places_for;
 use crosscap::command::findings::Findings;
 use crosscap::command::{overlay, picture};
 use crosscap_algorithms::certificate::{CertificateOptions, certify};
+use crosscap_algorithms::creases::{CreaseLimits, creases};
+use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::homology::homology as homology_of;
 use crosscap_algorithms::isomap::{IsomapOptions, isomap_places};
 use crosscap_algorithms::pieces::pieces;
@@ -66,11 +68,14 @@ fn checked(
     let homology = homology_of(&mesh.complex).map_err(|error| bad_value(&error))?;
     let certificate = certify(mesh, &options);
     let pieces = pieces(mesh);
+    let bends = points.map(|points| creases(mesh, points, &CreaseLimits::MEASURED, &Serial));
+    let bends = bends.transpose().map_err(|error| bad_value(&error))?;
     let findings = Findings {
         mesh,
         homology: &homology,
         certificate: &certificate,
         pieces: &pieces,
+        creases: bends.as_ref(),
     };
     let mut known = Value::Object(findings.json(certificate.verdict().is_verified()));
     known["reasons"] = certificate.violations().map(violation).collect();
@@ -115,6 +120,7 @@ pub fn page(
             homology: &homology,
             certificate: &certificate,
             pieces: &pieces,
+            creases: None,
         };
         let mut scene = picture::scene(&title, &findings, &verdict, None)?;
         if let Some(points) = &points {

@@ -116,18 +116,5 @@ pub fn dimension<'py>(
             })
         },
     )?;
-    let whole = found
-        .iter()
-        .map(|e| e.as_ref().map_or(-1, |e| e.dimension as i64));
-    let value = found
-        .iter()
-        .map(|e| e.as_ref().map_or(f64::NAN, |e| e.value));
-    let sure = found
-        .iter()
-        .map(|e| e.as_ref().map_or(f64::NAN, |e| e.confidence));
-    let all = PyDict::new(py);
-    all.set_item("dimension", PyArray1::<i64>::from_vec(py, whole.collect()))?;
-    all.set_item("value", PyArray1::<f64>::from_vec(py, value.collect()))?;
-    all.set_item("confidence", PyArray1::<f64>::from_vec(py, sure.collect()))?;
-    Ok(all)
+    arrays::of_estimates(py, &found)
 }

@@ -201,14 +201,14 @@ impl Settings {
 }
 
 /// Where one is, told to the interpreter: the number of the attempt and the stage.
-fn stages(send: &Sender<String>, attempt: usize) -> impl FnMut(Stage) + use<> {
+pub fn stages(send: &Sender<String>, attempt: usize) -> impl FnMut(Stage) + use<> {
     let send = send.clone();
     // Nobody listens any more only when the run is being stopped.
     move |stage| drop(send.send(format!("{attempt} {stage}")))
 }
 
 /// What is called with an attempt and a stage.
-fn told(progress: Option<Bound<'_, PyAny>>) -> impl FnMut(String) -> PyResult<()> {
+pub fn told(progress: Option<Bound<'_, PyAny>>) -> impl FnMut(String) -> PyResult<()> {
     move |at| match &progress {
         Some(progress) => progress.call1((at,)).map(drop),
         None => Ok(()),
@@ -216,7 +216,7 @@ fn told(progress: Option<Bound<'_, PyAny>>) -> impl FnMut(String) -> PyResult<()
 }
 
 /// How a reconstruction ended: what there is of a mesh, and why it is not handed over as good.
-struct End {
+pub struct End {
     outcome: Option<Outcome>,
     refusal: Option<Box<Refusal>>,
 }
@@ -235,9 +235,23 @@ impl End {
         }
     }
 
+    /// That of an outcome whose points are not at hand.
+    pub fn of_outcome(outcome: Outcome) -> Self {
+        if outcome.is_verified() {
+            return Self {
+                outcome: Some(outcome),
+                refusal: None,
+            };
+        }
+        Self {
+            outcome: None,
+            refusal: Some(Box::new(Refusal::of(Ok(outcome), None, None))),
+        }
+    }
+
     /// The arrays of the mesh and `triangle_piece`, as JSON the `report`, and the `refusal`; `None` where
     /// there is no mesh, and where it is verified.
-    fn told(&self, py: Python<'_>) -> PyResult<Told> {
+    pub fn told(&self, py: Python<'_>) -> PyResult<Told> {
         let refusal = self.refusal.as_deref();
         let outcome = self.outcome.as_ref();
         let outcome = outcome.or_else(|| refusal.and_then(|r| r.outcome.as_ref().ok()));
@@ -248,7 +262,7 @@ impl End {
 }
 
 /// A mesh, where there is one, and why it is not handed over, where it is not.
-type Told = (Option<Py<PyDict>>, Option<String>);
+pub type Told = (Option<Py<PyDict>>, Option<String>);
 
 /// Reconstructs a surface from points: see [`End::told`].
 #[pyfunction]

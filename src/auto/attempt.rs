@@ -5,6 +5,7 @@ use crosscap_algorithms::certificate::ViolationKind;
 use crosscap_algorithms::pieces::{Pieces, Reading};
 use crosscap_core::Error;
 use serde::Serialize;
+use std::cmp::Reverse;
 use std::fmt;
 
 /// One attempt at a reconstruction.
@@ -132,13 +133,24 @@ impl End {
         }
     }
 
-    /// How far an attempt came: the larger, the farther. Among meshes that are not verified those with
-    /// fewer places to complain about.
-    pub(super) fn rank(&self) -> (u8, std::cmp::Reverse<usize>) {
+    /// Boundaries of few edges: holes that the mesh shows, and does not resolve.
+    fn small_holes(&self) -> usize {
+        let small = |v: &&(ViolationKind, usize)| v.0 == ViolationKind::SmallHole;
         match self {
-            Self::Verified(_) => (2, std::cmp::Reverse(0)),
-            Self::Refused { .. } => (1, std::cmp::Reverse(self.places())),
-            Self::Failed(_) => (0, std::cmp::Reverse(0)),
+            Self::Refused { violations, .. } => violations.iter().filter(small).map(|v| v.1).sum(),
+            _ => 0,
         }
+    }
+
+    /// How far an attempt came: the larger, the farther. Among meshes that are not verified those with
+    /// fewer places to complain about; a hole that is shown with few edges is less wrong than anything else.
+    pub(super) fn rank(&self) -> (u8, Reverse<usize>, Reverse<usize>) {
+        let small = self.small_holes();
+        let step = match self {
+            Self::Verified(_) => 2,
+            Self::Refused { .. } => 1,
+            Self::Failed(_) => 0,
+        };
+        (step, Reverse(self.places() - small), Reverse(small))
     }
 }

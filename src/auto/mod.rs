@@ -8,6 +8,7 @@ mod attempt;
 mod density;
 mod input;
 mod moves;
+mod needs;
 mod pinned;
 mod prepared;
 mod rounded;

@@ -32,8 +32,6 @@ pub enum Move {
     /// Every point taken as one of a closed surface that does not cross itself, landmarks and charts by the spacing of the
     /// points, which varies much.
     Spaced,
-    /// The same, with other landmarks.
-    OtherLandmarks,
 }
 
 /// Points that the graph of unfolded charts joins each point to: enough to hold a random sample together, and
@@ -44,7 +42,7 @@ const GRAPH: usize = 20;
 const LOCAL: usize = 30;
 /// Factors on eps, or on both lengths.
 const LARGER: f64 = 1.3;
-const SMALLER: f64 = 0.8;
+pub(super) const SMALLER: f64 = 0.8;
 /// Part of the separation that the gaps of the points ask for that is taken: landmarks lie as chance has it.
 pub(crate) const ROOMY: f64 = 0.95;
 /// Factor on the separation alone.
@@ -74,7 +72,6 @@ impl Move {
             Self::Spaced => {
                 "every point taken as one of a closed surface that does not cross itself, all lengths in the spacing of the points"
             }
-            Self::OtherLandmarks => "other landmarks",
         }
     }
 
@@ -119,7 +116,6 @@ impl Move {
             Self::Closed => one_surface(from, pinned, ModelName::TwoPlanes),
             Self::Ending => one_surface(from, pinned, ModelName::Boundary),
             Self::Spaced => spaced(from, pinned, density),
-            Self::OtherLandmarks => other_landmarks(from, pinned, 1),
             _ => None,
         }
         .filter(|found| found.dl >= CLOSEST * least && found.check().is_ok() && found != from)

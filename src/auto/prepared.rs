@@ -5,7 +5,8 @@ use super::alone;
 use super::input::Input;
 use crate::pipeline::{Outcome, Parameters, Pipeline, distinct_rows};
 use crosscap_algorithms::certificate::{CertificateOptions, CoverReport, Place, certify};
-use crosscap_algorithms::prepare::{Preparation, PreparationSummary, Remedies};
+use crosscap_algorithms::creases::Creases;
+use crosscap_algorithms::prepare::{Preparation, PreparationSummary, Remedies, Subspace};
 use crosscap_algorithms::tuning::PreparationTuning;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{Error, PointCloud};
@@ -28,9 +29,11 @@ struct Better {
     cloud: PointCloud<f64>,
     /// Row of the input of every point.
     rows: Vec<usize>,
+    /// What `cloud` has coordinates of, where that is not the space of the input.
+    subspace: Option<Subspace>,
     /// The same points where they were given.
     unmoved: PointCloud<f64>,
-    /// Standard deviation of the points across the surface, unit of the data; 0 where they stayed.
+    /// How far the points scatter across the surface, root mean square, unit of the data; 0 where they stayed.
     noise: f64,
     summary: PreparationSummary,
 }
@@ -61,15 +64,12 @@ impl<'a> Prepared<'a> {
         let Ok(found) = Preparation::of(&distinct, Remedies::ALL, tuning, &threads) else {
             return Ok(Self::unchanged(given));
         };
-        let changed = found.left_out || found.projection.is_some();
-        let better = changed.then(|| Better {
+        let better = found.changes().then(|| Better {
             cloud: found.points(&distinct),
             unmoved: distinct.select(&found.kept),
             rows: found.kept.iter().map(|&k| kept[k]).collect(),
-            noise: match (&found.projection, &found.noise) {
-                (Some(_), Some(noise)) => noise.deviation,
-                _ => 0.0,
-            },
+            noise: found.scatter(),
+            subspace: found.subspace.clone(),
             summary: found.summary().named(|row| kept[row]),
         });
         Ok(Self {
@@ -142,6 +142,7 @@ impl Better {
             unmoved: cloud.clone(),
             cloud,
             rows,
+            subspace: None,
             noise: 0.0,
             summary: found.summary(),
         })
@@ -157,6 +158,7 @@ impl Better {
             cloud: self.cloud.select(&kept),
             unmoved: self.unmoved.select(&kept),
             rows: kept.iter().map(|&at| self.rows[at]).collect(),
+            subspace: self.subspace,
             noise: self.noise,
             summary: self.summary.without(rows),
         }
@@ -179,10 +181,17 @@ impl Better {
 
     /// The outcome with rows of the input, its mesh measured against the points where they were given.
     fn in_input(&self, mut outcome: Outcome, parameters: &Parameters) -> Outcome {
+        if let Some(subspace) = &self.subspace {
+            lift(subspace, &mut outcome);
+        }
         if self.noise > 0.0 {
+            // Where it cannot be told, the separation is the same everywhere, which is stricter where points are sparse.
+            let scale = parameters.spaces.metric.separation_scale(&self.unmoved);
+            let scale = scale.ok().flatten();
             let options = CertificateOptions {
                 points: Some(&self.unmoved),
                 landmark_separation: Some(parameters.dl),
+                separation_scale: scale.as_deref(),
                 noise: self.noise,
                 ..CertificateOptions::default()
             };
@@ -227,5 +236,20 @@ impl Better {
             _ => {}
         }
         error
+    }
+}
+
+/// Mesh and certificate with the places in R^N of those in a subspace.
+fn lift(subspace: &Subspace, outcome: &mut Outcome) {
+    let places = outcome.mesh.vertices.iter();
+    let numbers: Vec<f64> = places.flat_map(|place| subspace.lift(place)).collect();
+    let count = outcome.mesh.vertices.len();
+    if let Ok(vertices) = PointCloud::new(numbers.len() / count.max(1), numbers) {
+        outcome.report.dimension = vertices.dimension();
+        outcome.mesh.vertices = vertices;
+    }
+    let creases = outcome.creases.iter_mut().flat_map(Creases::places_mut);
+    for place in outcome.certificate.places_mut().chain(creases) {
+        *place = subspace.lift(place);
     }
 }

@@ -4,11 +4,13 @@
 //! have failed is not handed over at once: a second attempt with other landmarks has to pass too,
 //! and agree. Two verified attempts that disagree are two readings of the points, and neither is handed over.
 
+mod next;
+
 use super::Auto;
 use super::attempt::{Attempt, End, Topology};
 use super::density::Density;
 use super::input::Input;
-use super::moves::{opened, other_landmarks};
+use super::needs::gap_needs;
 use super::pinned::Pinned;
 use super::prepared::{Made, Prepared};
 use super::rounded::Rounded;
@@ -84,11 +86,6 @@ pub struct Choice {
     /// Why these, in a few words.
     pub reason: String,
 }
-
-/// Other landmarks in a row, where little is wrong.
-const AGAIN: usize = 2;
-/// Attempts in a row that come no farther than an earlier one, after which the search ends where much is wrong.
-const IN_VAIN: usize = 3;
 
 /// A search that is under way.
 struct Progress<'a> {
@@ -188,13 +185,6 @@ impl Auto {
     }
 }
 
-/// The landmark separation that the gaps of the points ask for, where they are what is wrong.
-fn gap_needs(symptom: Option<Symptom>, outcome: &Result<Outcome, Error>) -> Option<f64> {
-    let outcome = outcome.as_ref().ok()?;
-    let needed = outcome.certificate.faithful.as_ref()?.separation_needed;
-    needed.filter(|&n| symptom == Some(Symptom::Gaps) && n < outcome.report.parameters.dl)
-}
-
 impl Progress<'_> {
     /// The first attempt at distances that are those of no places: every point is one of a surface, and no metric is
     /// tried but the one that is given.
@@ -264,60 +254,6 @@ impl Progress<'_> {
         self.attempts.len() < ends && self.auto.time_limit.is_none_or(in_time)
     }
 
-    /// Other landmarks for the attempt that came farthest, where it nearly passed and they were not tried so often yet.
-    fn nearly(&self) -> Option<Parameters> {
-        let farthest = self.best.as_ref()?.0;
-        // No chance of the landmarks opens a gap that they are too far apart for.
-        if self.needed[farthest].is_some() {
-            return None;
-        }
-        let near = (self.attempts.get(farthest)).filter(|attempt| attempt.end.is_near_miss())?;
-        let of = &near.parameters;
-        let alike = |other: &&Attempt| {
-            let other = &other.parameters;
-            other.spaces == of.spaces && other.models == of.models && other.surface == of.surface
-        };
-        let times = self.attempts.iter().filter(alike).count();
-        // The first time there is nothing alike but the attempt itself.
-        if times > AGAIN {
-            return None;
-        }
-        let fresh = |next: &Parameters| self.attempts.iter().all(|a| a.parameters != *next);
-        (times..=times + 1).find_map(|time| other_landmarks(of, &self.pinned, time).filter(fresh))
-    }
-
-    /// What to try next and why: other landmarks where little is wrong, and otherwise a change of the attempt that came
-    /// farthest, or of the first, that was not tried yet.
-    fn next(&self, density: &Density) -> Option<(Parameters, &'static str)> {
-        let pinned = &self.pinned;
-        if let Some(next) = self.nearly() {
-            return Some((next, "other landmarks, as little is wrong"));
-        }
-        let farthest = self.best.as_ref().map_or(0, |best| best.0);
-        let fresh = |next: &Parameters| self.attempts.iter().all(|a| a.parameters != *next);
-        [farthest, 0].into_iter().find_map(|index| {
-            let from = &self.attempts[index].parameters;
-            if let Some(next) = self.needed[index].and_then(|dl| opened(from, pinned, density, dl))
-                && fresh(&next)
-            {
-                return Some((next, "landmarks near enough to leave the gaps open"));
-            }
-            let moves = self.symptoms[index].map_or(&[][..], Symptom::moves);
-            moves.iter().find_map(|step| {
-                let next = step.apply(from, pinned, density).filter(fresh)?;
-                Some((next, step.reason()))
-            })
-        })
-    }
-
-    /// Whether further attempts are in vain: the last ones came no farther than one before them, and much is wrong
-    /// with that.
-    fn is_hopeless(&self) -> bool {
-        let farthest = self.best.as_ref().map_or(0, |best| best.0);
-        let since = self.attempts.len() - 1 - farthest;
-        since >= IN_VAIN && !self.attempts[farthest].end.is_near_miss()
-    }
-
     /// The attempts after the first one failed, until two agree, further ones are in vain or the budget is spent.
     fn further(
         &mut self,
@@ -331,8 +267,7 @@ impl Progress<'_> {
         while self.may_go_on(passed.is_some()) {
             confirmations += usize::from(passed.is_some());
             let next = match &passed {
-                Some((_, parameters)) => other_landmarks(parameters, &self.pinned, confirmations)
-                    .map(|next| (next, "other landmarks, to confirm the one that passed")),
+                Some((_, parameters)) => self.confirming(parameters, confirmations, &density),
                 None if self.is_hopeless() => None,
                 None => self.next(&density),
             };

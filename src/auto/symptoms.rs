@@ -16,6 +16,8 @@ pub(super) enum Symptom {
     Curves,
     /// Charts fold, or two sheets are mixed.
     Folds,
+    /// Where the points end the mesh has too few edges to follow them: a hole with a short rim, an edge across the mouth of one.
+    Coarse,
     /// Edges of the mesh end where nothing was found to end.
     Ends,
     /// Stars stay open.
@@ -24,6 +26,8 @@ pub(super) enum Symptom {
     Gaps,
     /// Two sheets of points are one in the mesh.
     Merged,
+    /// Points are left behind by a mesh with curves.
+    Behind,
     /// Mesh and points are not near each other.
     Cover,
 }
@@ -53,6 +57,8 @@ impl Symptom {
             Self::Folds
         } else if !outcome.failures.is_empty() {
             Self::Open
+        } else if Self::is_coarse(outcome) {
+            Self::Coarse
         } else if found(&|v| v.kind.level() == Level::Edges) {
             Self::Ends
         } else if found(&|v| {
@@ -62,35 +68,52 @@ impl Symptom {
             Self::Gaps
         } else if found(&|v| v.kind == ViolationKind::MergedSheets) {
             Self::Merged
+        } else if outcome.report.curve_points >= SOME
+            && found(&|v| {
+                use ViolationKind::*;
+                matches!(v.kind, UncoveredPoints | UnusedLandmarks)
+            })
+        {
+            Self::Behind
         } else {
             // Vertices off their points are badly placed landmarks, too.
             Self::Cover
         }
     }
 
-    /// What is worth trying, in order.
+    /// Whether all that is wrong is where the mesh ends, or a gap of the points.
+    fn is_coarse(outcome: &Outcome) -> bool {
+        use ViolationKind::*;
+        let certificate = &outcome.certificate;
+        let ends = (outcome.mesh.complex.curve_edges.iter()).any(|edge| edge.cells == 1);
+        let at_ends = |v: &Violation| match v.kind {
+            SmallHole => true,
+            MeshFarFromPoints => ends,
+            _ => false,
+        };
+        certificate.violations().any(at_ends)
+            && (certificate.violations()).all(|v| at_ends(v) || v.kind == BridgedGap)
+    }
+
+    /// What is worth trying, in order. Of 756 clouds around one feature, 500 to 1500 points each, smaller neighborhoods passed at
+    /// 71 of 219 attempts, one closed surface at 36 of 260, charts that unfold at 5 of 114, other landmarks by themselves at 17 of
+    /// 60 the first time and never again.
     pub(super) fn moves(self) -> &'static [Move] {
         use Move::*;
         match self {
             Self::Sparse => &[Spaced, Larger, Local, Closed, Ending],
             Self::Unexplained => &[Spaced, Closed, Ending, Smaller, Local],
-            Self::Curves => &[Spaced, Closed, Ending, Smaller, Local, Finer, Unfolded],
-            Self::Folds | Self::Open => &[Spaced, Unfolded, Closed, Smaller, Ending, Local, Finer],
-            Self::Ends => &[Ending, Spaced, Closed, Smaller, Unfolded],
+            Self::Curves => &[Spaced, Smaller, Closed, Ending, Local, Finer, Unfolded],
+            Self::Folds | Self::Open => &[Spaced, Smaller, Closed, Unfolded, Ending, Local, Finer],
+            Self::Coarse => &[Smaller, Ending, Finer, Spaced, Closed, Unfolded],
+            Self::Ends => &[Ending, Spaced, Smaller, Closed, Unfolded],
             // A gap stays open where landmarks are nearer to each other than it is wide, if the mesh may end there.
-            Self::Gaps => &[Finer, Ending, Spaced, Smaller],
+            Self::Gaps => &[Smaller, Ending, Finer, Spaced],
             // Paths along the surface do not lead from one sheet to the other.
             Self::Merged => &[Closed, Ending, Finer, Unfolded, Smaller],
-            Self::Cover => &[
-                Spaced,
-                OtherLandmarks,
-                Closed,
-                Finer,
-                Smaller,
-                Ending,
-                Unfolded,
-                Local,
-            ],
+            // In a smaller neighborhood there is less beside the curve that its end could be taken for.
+            Self::Behind => &[Smaller, Spaced, Closed, Finer, Ending, Unfolded, Local],
+            Self::Cover => &[Spaced, Smaller, Closed, Finer, Ending, Unfolded, Local],
         }
     }
 }

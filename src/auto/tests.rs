@@ -3,7 +3,7 @@ use crate::pipeline::{Parameters, Pipeline};
 use crate::refusal::{Advice, FaultKind};
 use crosscap_algorithms::surfaces::{Random, SampleSurface, Sampling};
 use crosscap_backends::files::Distances;
-use crosscap_core::{Error, PointCloud};
+use crosscap_core::{Error, PointCloud, squared_distance};
 
 fn sample(name: &str, count: usize) -> PointCloud<f64> {
     let surface = SampleSurface::find(name).unwrap();
@@ -238,4 +238,30 @@ fn distances_of_no_places_need_nothing_more() {
     let outcome = search.into_verified(None).unwrap();
     assert!(outcome.report.parameters.surface);
     assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
+}
+
+#[test]
+fn noise_in_many_directions_is_taken_away_by_the_subspace() {
+    use crosscap_algorithms::surfaces::embed;
+    const WIDTH: usize = 60;
+    let plain = embed(&sample("torus", 4000), WIDTH, 8).unwrap();
+    let mut random = Random::new(9);
+    // In 57 directions together it is a third of what lies between the points.
+    let noisy = (plain.coordinates().iter()).map(|x| x + 0.006 * random.normal());
+    let cloud = PointCloud::new(WIDTH, noisy.collect()).unwrap();
+    let search = Parameters::auto().reconstruct(&cloud).unwrap();
+    let told = search.preparation.as_ref().and_then(|found| found.subspace);
+    let (dimension, deviation) = told.unwrap();
+    assert_eq!(dimension, 3);
+    assert!((deviation - 0.006).abs() < 2e-4);
+    let outcome = search.into_verified(Some(&cloud)).unwrap();
+    assert_eq!(outcome.homology.betti_rational, [1, 2, 1]);
+    assert_eq!(outcome.report.dimension, WIDTH);
+    // Every vertex is where its point would be without noise.
+    for (place, &row) in (outcome.mesh.vertices.iter()).zip(&outcome.mesh.point_index) {
+        let row = usize::try_from(row).unwrap();
+        let off = squared_distance(place, plain.point(row)).sqrt();
+        assert!(off < 0.03, "{off} at row {row}");
+        assert!(squared_distance(place, cloud.point(row)).sqrt() > off);
+    }
 }

@@ -7,7 +7,9 @@ use super::output;
 use super::points::PointArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
+use crosscap::MetricName;
 use crosscap_algorithms::certificate::{CertificateOptions, SpecialPoint, certify};
+use crosscap_algorithms::creases::{CreaseLimits, Creases, creases};
 use crosscap_algorithms::homology::{LocalHomology, homology, local_homology};
 use crosscap_algorithms::pieces::{Pieces, pieces};
 use crosscap_backends::euclidean::EuclideanOracle;
@@ -87,10 +89,15 @@ impl Check {
         let progress = Progress::new("checking");
         let known = file.extras.metadata.get("dl").and_then(Value::as_f64);
         let special_points = self.declared(&file.extras.metadata)?;
+        let scale = match (&points, self.dl) {
+            (Some(points), None) => metric_of(&file.extras.metadata).separation_scale(points)?,
+            _ => None,
+        };
         let options = CertificateOptions {
             special_points: &special_points,
             points: points.as_ref(),
             landmark_separation: self.dl.or(known.filter(|&dl| dl > 0.0)),
+            separation_scale: scale.as_deref(),
             closed: self.closed,
             ..CertificateOptions::default()
         };
@@ -101,6 +108,7 @@ impl Check {
         };
         let certificate = certify(mesh, &options);
         let pieces = pieces(mesh);
+        let creases = self.creases(mesh, points.as_ref())?;
         drop(progress);
         if let Some(path) = &self.normalization {
             let pieces = pieces.as_ref().map_err(|error| {
@@ -117,6 +125,7 @@ impl Check {
                 homology: &homology,
                 certificate: &certificate,
                 pieces: &pieces,
+                creases: creases.as_ref(),
             },
             local.as_ref(),
         )
@@ -169,6 +178,24 @@ impl Check {
             "{}: not verified{why}",
             self.mesh.display()
         )))
+    }
+
+    /// Where the surface bends sharply, which the points show.
+    fn creases(
+        &self,
+        mesh: &Mesh,
+        points: Option<&PointCloud<f64>>,
+    ) -> Result<Option<Creases>, Failure> {
+        let Some(points) = points else {
+            return Ok(None);
+        };
+        let threads = Threads::new(0)?;
+        Ok(Some(creases(
+            mesh,
+            points,
+            &CreaseLimits::MEASURED,
+            &threads,
+        )?))
     }
 
     /// The points that the mesh declares, as it declares which edges are on curves.
@@ -267,4 +294,10 @@ fn told(local: &LocalHomology, mesh: &Mesh) -> String {
         betti(first.betti_rational),
         betti(first.betti_mod2)
     )
+}
+
+/// The metric that a mesh was made with, as its file tells; straight lines where it does not.
+fn metric_of(metadata: &Value) -> MetricName {
+    let name = metadata.pointer("/spaces/metric").and_then(Value::as_str);
+    name.and_then(|name| name.parse().ok()).unwrap_or_default()
 }

@@ -2,6 +2,7 @@
 
 use super::number::{betti, counted};
 use crosscap_algorithms::certificate::Certificate;
+use crosscap_algorithms::creases::Creases;
 use crosscap_algorithms::homology::Homology;
 use crosscap_algorithms::pieces::{Pieces, PiecesError};
 use crosscap_core::Mesh;
@@ -14,6 +15,8 @@ pub struct Findings<'a> {
     pub homology: &'a Homology,
     pub certificate: &'a Certificate,
     pub pieces: &'a Result<Pieces, PiecesError>,
+    /// Not known without the points.
+    pub creases: Option<&'a Creases>,
 }
 
 impl Findings<'_> {
@@ -51,6 +54,14 @@ impl Findings<'_> {
         }
     }
 
+    /// Faces, creases and corners in a sentence, where there are any.
+    pub fn creased(&self) -> Option<String> {
+        let creases = self.creases.filter(|c| !c.creases.is_empty())?.to_string();
+        let mut letters = creases.chars();
+        let first = letters.next()?.to_uppercase();
+        Some(format!("{first}{}.", letters.as_str()))
+    }
+
     /// Whether every piece is orientable; `None` when the pieces cannot be told.
     pub fn orientable(&self) -> Option<bool> {
         let pieces = self.pieces.as_ref().ok()?;
@@ -80,8 +91,11 @@ impl Findings<'_> {
             }
             Err(_) => String::new(),
         };
+        let creases = self
+            .creases
+            .map_or_else(String::new, |creases| format!("\ncreases    {creases}"));
         format!(
-            "Betti      {}; Euler characteristic {}{undone}\npieces     {}\norientable {orientable}\n{}",
+            "Betti      {}; Euler characteristic {}{undone}\npieces     {}{creases}\norientable {orientable}\n{}",
             self.topology(),
             self.homology.euler,
             self.description(),
@@ -105,6 +119,7 @@ impl Findings<'_> {
             "description": self.pieces.as_ref().ok().map(ToString::to_string),
             "pieces": pieces,
             "pieces_error": error,
+            "creases": self.creases,
             "certificate": self.certificate,
         });
         match all {

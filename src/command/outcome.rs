@@ -51,6 +51,7 @@ pub fn findings(outcome: &Outcome) -> Findings<'_> {
         homology: &outcome.homology,
         certificate: &outcome.certificate,
         pieces: &outcome.pieces,
+        creases: outcome.creases.as_ref(),
     }
 }
 

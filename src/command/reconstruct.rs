@@ -320,6 +320,7 @@ impl Reconstruct {
             format!("Betti numbers {}", findings.topology()),
             findings.description(),
         ];
+        lines.extend(findings.creased());
         lines.extend(outcome.report.given.as_ref().map(told));
         if let Some(count @ 1..) = duplicates(outcome) {
             lines.push(format!(

@@ -144,6 +144,7 @@ impl View {
             homology: &homology,
             certificate: &certificate,
             pieces: &pieces,
+            creases: None,
         };
         let made = file
             .extras

@@ -1,28 +1,13 @@
 //! From waists to a mesh with a verdict, and again with more landmarks where that is what it lacks.
 
-use super::mesh::{at_input_row, mesh_of, special_points};
-use super::prepared::Prepared;
+use super::mesh::{Located, at_input_row, mesh_of, special_points};
 use super::progress::Progress;
 use super::{Parts, Stage};
-use crate::spaces::MetricName;
-use crosscap_algorithms::certificate::{
-    Certificate, CertificateOptions, SpecialPoint, ViolationKind, certify, certify_by_distances,
-    distances_to_mesh,
-};
+use crosscap_algorithms::certificate::{Certificate, SpecialPoint, ViolationKind};
 use crosscap_algorithms::homology::{Homology, homology};
 use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
-use crosscap_algorithms::stratify::{Refinement, Stratification, WaistProducer};
-use crosscap_core::{Error, LocalChart, Mesh, PointCloud, Row, Triangulation};
-
-/// What meshes of one cloud are made from.
-pub(super) struct Making<'m> {
-    pub(super) parts: &'m Parts,
-    pub(super) prepared: &'m Prepared<'m>,
-    pub(super) producer: &'m dyn WaistProducer<f64>,
-    pub(super) chart: &'m dyn LocalChart,
-    /// Where vertices are drawn: the places of the points, those on curves moved onto them.
-    pub(super) places: &'m PointCloud<f64>,
-}
+use crosscap_algorithms::stratify::Stratification;
+use crosscap_core::{Complex, Error, LocalChart, Mesh, Row, Triangulation};
 
 /// A waist and what was made of it.
 pub(super) struct Triangulated {
@@ -42,27 +27,61 @@ pub(super) struct Judged {
 }
 
 impl Judged {
+    /// Whether the verdict is that points are far from the mesh.
+    pub(super) fn leaves_points_behind(&self) -> bool {
+        let mut violations = self.certificate.violations();
+        violations.any(|violation| violation.kind == ViolationKind::UncoveredPoints)
+    }
+
     /// How many places the verdict complains about.
     fn complaints(&self) -> usize {
         self.certificate.violations().map(|v| v.count).sum()
     }
 }
 
-impl Making<'_> {
+/// Makes meshes of one cloud: what asks for points is left to whoever holds them.
+pub(super) trait Maker {
+    /// What works on waists.
+    fn parts(&self) -> &Parts;
+
+    /// Lays neighborhoods out.
+    fn chart(&self) -> &dyn LocalChart;
+
+    /// The rows that landmarks stand for.
+    fn rows(&self) -> &dyn Located;
+
+    /// The waist with the rows `extra` as landmarks too, looked over.
+    fn waist(&self, extra: &[Row]) -> Result<Stratification<f64>, Error>;
+
+    /// Rows that should be landmarks as well, where triangles stray from the points.
+    fn rows_where_astray(
+        &self,
+        waist: &Stratification<f64>,
+        complex: &Complex,
+    ) -> Result<Vec<Row>, Error>;
+
+    /// Rows that should be landmarks as well, as a mesh leaves them behind.
+    fn rows_left_behind(&self, made: &Triangulated, mesh: &Mesh) -> Result<Vec<Row>, Error>;
+
+    /// The verdict on a mesh.
+    fn certify(
+        &self,
+        mesh: &Mesh,
+        special_points: &[SpecialPoint],
+        made: &Triangulated,
+    ) -> Result<Certificate, Error>;
+
     /// A mesh with its verdict. Where the verdict is that points are left behind, some of them become landmarks and the
     /// mesh is made again. Of all that are made that with the fewest places to complain about counts.
     ///
     /// # Errors
     /// Those of the waist and of the triangulator.
-    pub(super) fn mesh(
-        &self,
-        progress: &mut Progress<'_>,
-    ) -> Result<(Triangulated, Judged), Error> {
+    fn mesh(&self, progress: &mut Progress<'_>) -> Result<(Triangulated, Judged), Error> {
         let mut made = self.triangulated(Vec::new(), progress)?;
         let mut judged = self.judged(&made, progress)?;
-        let mut behind = self.left_behind(&made, &judged);
+        let mut behind = self.behind(&made, &judged)?;
         let mut added = made.added.clone();
-        for _ in 0..self.parts.tuning.refinement.mends {
+        for _ in 0..self.parts().tuning.refinement.mends {
             if behind.is_empty() {
                 break;
             }
@@ -70,7 +89,7 @@ impl Making<'_> {
             progress.enter(Stage::Landmarks);
             let again = self.triangulated(added, progress)?;
             let verdict = self.judged(&again, progress)?;
-            behind = self.left_behind(&again, &verdict);
+            behind = self.behind(&again, &verdict)?;
             added = again.added.clone();
             if verdict.complaints() < judged.complaints() {
                 (made, judged) = (again, verdict);
@@ -86,21 +105,17 @@ impl Making<'_> {
         mut extra: Vec<Row>,
         progress: &mut Progress<'_>,
     ) -> Result<Triangulated, Error> {
+        let parts = self.parts();
         let mut round = 0;
         loop {
-            let waist = self.producer.waist(&extra)?;
-            waist.check(self.parts.stratifier.name(), self.prepared.rows.cloud.len())?;
+            let waist = self.waist(&extra)?;
             progress.enter(Stage::Triangulation);
-            let triangulation = (self.parts)
-                .triangulated(&waist.waist, self.chart)
-                .map_err(|error| at_input_row(error, &waist.rows, &self.prepared.rows.kept))?;
+            let triangulation = parts
+                .triangulated(&waist.waist, self.chart())
+                .map_err(|error| at_input_row(error, &waist.rows, self.rows()))?;
             let mut added = Vec::new();
-            if round < self.parts.tuning.refinement.rounds
-                && self.takes_more(&waist, &triangulation)
-            {
-                added = self
-                    .refinement(&waist)
-                    .rows_where_astray(&triangulation.complex);
+            if round < parts.tuning.refinement.rounds && parts.takes_more(&waist, &triangulation) {
+                added = self.rows_where_astray(&waist, &triangulation.complex)?;
             }
             if added.is_empty() {
                 return Ok(Triangulated {
@@ -115,78 +130,38 @@ impl Making<'_> {
         }
     }
 
-    /// Whether more landmarks may help: what cannot be triangulated is not mended by them.
-    fn takes_more(&self, waist: &Stratification<f64>, triangulation: &Triangulation) -> bool {
-        let open = triangulation.incomplete.len() as f64;
-        open <= self.parts.tuning.refinement.open_share * waist.rows.len() as f64
-    }
-
-    fn refinement<'r>(&'r self, waist: &'r Stratification<f64>) -> Refinement<'r, f64> {
-        Refinement {
-            near: &self.prepared.engines.euclidean,
-            producer: self.producer,
-            rows: &waist.rows,
-            dl: self.parts.parameters.dl,
-            scale: self.prepared.engines.scale(),
-            tuning: &self.parts.tuning.refinement,
-        }
-    }
-
     /// Rows that should be landmarks as well, where the verdict on a mesh is that points are far from it.
-    fn left_behind(&self, made: &Triangulated, judged: &Judged) -> Vec<Row> {
-        let uncovered = (judged.certificate.violations())
-            .any(|violation| violation.kind == ViolationKind::UncoveredPoints);
-        if !uncovered || !self.takes_more(&made.waist, &made.triangulation) {
-            return Vec::new();
+    fn behind(&self, made: &Triangulated, judged: &Judged) -> Result<Vec<Row>, Error> {
+        if judged.leaves_points_behind()
+            && self.parts().takes_more(&made.waist, &made.triangulation)
+        {
+            return self.rows_left_behind(made, &judged.mesh);
         }
-        let heights = distances_to_mesh(&judged.mesh, &self.prepared.engines.cloud);
-        self.refinement(&made.waist).rows_left_behind(&heights)
+        Ok(Vec::new())
     }
 
     /// The mesh of a triangulation, its homology and pieces, and the verdict.
     fn judged(&self, made: &Triangulated, progress: &mut Progress<'_>) -> Result<Judged, Error> {
         progress.enter(Stage::Homology);
-        let complex = &made.triangulation.complex;
-        let mesh = mesh_of(complex, &made.waist, self.places, &self.prepared.rows.kept)?;
+        let mesh = mesh_of(&made.triangulation.complex, &made.waist, self.rows())?;
         let homology = homology(&mesh.complex)?;
         let pieces = pieces(&mesh);
         progress.enter(Stage::Certificate);
-        let special_points = special_points(&mesh, &made.waist, &self.prepared.rows.kept);
+        let special_points = special_points(&mesh, &made.waist, self.rows());
         Ok(Judged {
-            certificate: self.certify(&mesh, &special_points, made),
+            certificate: self.certify(&mesh, &special_points, made)?,
             special_points,
             mesh,
             homology,
             pieces,
         })
     }
+}
 
-    fn certify(
-        &self,
-        mesh: &Mesh,
-        special_points: &[SpecialPoint],
-        made: &Triangulated,
-    ) -> Certificate {
-        let Self {
-            parts, prepared, ..
-        } = self;
-        let dropped = made.triangulation.dropped.iter();
-        let dropped = dropped.map(|&k| made.waist.rows[k]);
-        let options = CertificateOptions {
-            points: Some(&prepared.engines.cloud),
-            landmark_separation: Some(parts.parameters.dl),
-            separation_scale: prepared.engines.scale(),
-            unused_landmarks: &prepared.rows.in_input(dropped),
-            special_points,
-            closed: parts.parameters.boundary.is_empty()
-                && !parts.models.all().iter().any(|m| m.finds_boundary()),
-            faithful: parts.parameters.spaces.metric != MetricName::Lifted,
-            limits: parts.limits.clone(),
-            ..CertificateOptions::default()
-        };
-        match &prepared.given {
-            None => prepared.rows.named(certify(mesh, &options)),
-            Some(space) => certify_by_distances(mesh, space.metric(), space.oracle(), &options),
-        }
+impl Parts {
+    /// Whether more landmarks may help: what cannot be triangulated is not mended by them.
+    fn takes_more(&self, waist: &Stratification<f64>, triangulation: &Triangulation) -> bool {
+        let open = triangulation.incomplete.len() as f64;
+        open <= self.tuning.refinement.open_share * waist.rows.len() as f64
     }
 }

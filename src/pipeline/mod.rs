@@ -1,5 +1,6 @@
 //! From a point cloud to a verified surface: the parts put together with good defaults.
 
+mod by_tiles;
 mod making;
 mod mesh;
 mod parameters;
@@ -8,6 +9,8 @@ mod progress;
 mod report;
 mod rows;
 mod run;
+mod tiled;
+mod whole;
 
 pub use parameters::{Method, Parameters};
 pub(crate) use prepared::Input;

@@ -4,6 +4,7 @@ use super::{Parameters, Stage};
 use crate::spaces::Warning;
 use crate::watched::Distortion;
 use crosscap_algorithms::certificate::{Certificate, SpecialPoint, Verdict};
+use crosscap_algorithms::creases::Creases;
 use crosscap_algorithms::homology::Homology;
 use crosscap_algorithms::pieces::{Pieces, PiecesError};
 use crosscap_algorithms::stratify::{ModelCounts, StratifyCounts, Tuning};
@@ -117,6 +118,9 @@ pub struct Outcome {
     pub certificate: Certificate,
     /// What the surface is, where the crossing can be undone.
     pub pieces: Result<Pieces, PiecesError>,
+    /// Where the surface bends sharply; `None` where the mesh is not verified, where distances were the only input, and
+    /// where the points are in tiles.
+    pub creases: Option<Creases>,
     /// Counts and times.
     pub report: Report,
     /// Where the triangulation could not be completed, with the parameter to change.

@@ -8,6 +8,11 @@ use crosscap_core::{Error, PointCloud, Row, Table};
 pub(super) struct InputRow(usize);
 
 impl InputRow {
+    /// The row of this number.
+    pub(super) fn new(index: usize) -> Self {
+        Self(index)
+    }
+
     /// The number of the row.
     pub(super) fn index(self) -> usize {
         self.0
@@ -95,7 +100,7 @@ impl Rows {
 }
 
 /// Fewest different points that are worked on.
-const LEAST_POINTS: usize = 8;
+pub(super) const LEAST_POINTS: usize = 8;
 
 /// A number for the place of a row, equal for equal places.
 fn fingerprint(row: &[f64]) -> u64 {

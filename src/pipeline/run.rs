@@ -1,14 +1,16 @@
 //! The stages of a reconstruction, one after another.
 
-use super::making::{Making, Triangulated};
-use super::mesh::failures;
+use super::making::{Judged, Maker, Triangulated};
+use super::mesh::{AllRows, failures};
 use super::prepared::{Input, Prepared};
 use super::progress::Progress;
 use super::report::PluginNames;
+use super::whole::Whole;
 use super::{Outcome, Parameters, Parts, Pipeline, Report, Stage};
 use crate::spaces::{Neighborhoods, custom, positions};
 use crate::watched::{Distortion, Watched};
 use crosscap_algorithms::certificate::Verdict;
+use crosscap_algorithms::creases::{CreaseLimits, Creases, creases};
 use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::neighborhood::{
     FlatRadius, NearestCount, NeighborhoodPolicy, PolicyOracle, Surroundings,
@@ -53,22 +55,26 @@ impl Pipeline {
 
         progress.enter(Stage::Landmarks);
         let producer = stratifier.cut(&ground, &analysis)?;
-        let making = Making {
+        let whole = Whole {
             parts,
             prepared: &prepared,
             producer: producer.as_ref(),
             chart: &watched,
-            places: producer.places().unwrap_or(&prepared.rows.cloud),
+            rows: AllRows {
+                places: producer.places().unwrap_or(&prepared.rows.cloud),
+                kept: &prepared.rows.kept,
+            },
         };
-        let (made, judged) = making.mesh(&mut progress)?;
+        let (made, judged) = whole.mesh(&mut progress)?;
         // A star that stayed open in its own chart may be complete all the same; whether it is, the
         // certificate has seen edge by edge and link by link.
         let failures = match judged.certificate.verdict() {
             Verdict::Verified => Vec::new(),
-            _ => failures(&made.triangulation, &made.waist, &prepared.rows.kept),
+            _ => failures(&made.triangulation, &made.waist, whole.rows()),
         };
         Ok(Outcome {
             failures,
+            creases: parts.creases(&prepared, &judged, &threads)?,
             homology: judged.homology,
             certificate: judged.certificate,
             pieces: judged.pieces,
@@ -90,6 +96,20 @@ impl Pipeline {
 }
 
 impl Parts {
+    /// The creases of a mesh that is verified, where there are coordinates to tell them by.
+    fn creases(
+        &self,
+        prepared: &Prepared<'_>,
+        judged: &Judged,
+        threads: &Threads,
+    ) -> Result<Option<Creases>, Error> {
+        if prepared.given.is_some() || !judged.certificate.verdict().is_verified() {
+            return Ok(None);
+        }
+        let cloud = &prepared.engines.cloud;
+        creases(&judged.mesh, cloud, &CreaseLimits::MEASURED, threads).map(Some)
+    }
+
     /// The space of the analysis.
     fn space<'g>(&'g self, prepared: &'g Prepared<'_>) -> Space<'g, f64> {
         let space = match (prepared.given, &self.analysis_metric) {
@@ -163,9 +183,6 @@ impl Parts {
     /// What works on these points, by its own name.
     fn plugins(&self, ground: &Ground<'_, f64>) -> PluginNames {
         let space = &ground.analyzer.space;
-        let front = self.front(ground.chart);
-        let literal = self.triangulator.is_none();
-        let part = |name: &str| literal.then(|| name.to_string());
         PluginNames {
             metric: space.metric().name().into(),
             oracle: space.oracle().name().into(),
@@ -174,12 +191,23 @@ impl Parts {
                 ChartSpace::Metric(space) => space.metric().name().into(),
             },
             estimator: (!self.parameters.surface).then(|| ground.analyzer.estimator.name().into()),
+            ..self.makers(ground.chart)
+        }
+    }
+
+    /// What works on waists and makes them, by its own name.
+    pub(super) fn makers(&self, chart: &dyn LocalChart) -> PluginNames {
+        let front = self.front(chart);
+        let literal = self.triangulator.is_none();
+        let part = |name: &str| literal.then(|| name.to_string());
+        PluginNames {
             stratifier: self.stratifier.name().into(),
             selector: self.selector.name().into(),
             triangulator: self.triangulator(&front).name().into(),
             chart: part(front.chart.name()),
             compatibility: part(front.test.name()),
             rule: part(front.rule.name()),
+            ..PluginNames::default()
         }
     }
 

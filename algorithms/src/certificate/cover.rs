@@ -1,5 +1,6 @@
 //! Fifth level: mesh and points are near each other, both ways.
 
+use super::chords::Chords;
 use super::distance::Products;
 use super::faithful::Search;
 use super::geometry::corners;
@@ -86,6 +87,42 @@ fn steps(corners: [&[f64]; 3], separation: f64) -> usize {
         .sqrt();
     let pieces = (longest / (2.0 * separation)).ceil();
     2 * (pieces.min(12.0) as usize).max(1)
+}
+
+/// Places inside an edge, as shares of the way.
+fn shares(pieces: usize) -> impl Iterator<Item = f64> {
+    (1..pieces).map(move |i| i as f64 / pieces as f64)
+}
+
+/// Places of a triangle, as weights of its corners, which are none of them; whether each is inside.
+fn weights(pieces: usize) -> impl Iterator<Item = ([f64; 3], bool)> {
+    let grid =
+        (0..=pieces).flat_map(move |i| (0..=pieces - i).map(move |j| [i, j, pieces - i - j]));
+    let weighed = grid.filter_map(move |steps| {
+        let zeros = steps.iter().filter(|&&x| x == 0).count();
+        (zeros < 2).then(|| (steps.map(|x| x as f64 / pieces as f64), zeros == 0))
+    });
+    std::iter::once(([1.0 / 3.0; 3], true)).chain(weighed)
+}
+
+/// The places of the mesh whose nearest points are asked for, one after the other, where the landmark separation is the
+/// same everywhere.
+pub(super) fn places(mesh: &Mesh, bare: &[[u32; 2]], separation: f64) -> Vec<f64> {
+    let mut all = mesh.vertices.coordinates().to_vec();
+    for &ends in bare {
+        let [p, q] = ends.map(|v| mesh.vertices.point(v as usize));
+        for t in shares(steps([p, q, q], separation)) {
+            all.extend(p.iter().zip(q).map(|(p, q)| p * (1.0 - t) + q * t));
+        }
+    }
+    for t in 0..mesh.complex.triangles.len() as u32 {
+        let c = corners(mesh, t);
+        for (w, _) in weights(steps(c, separation)) {
+            let place = (0..c[0].len()).map(|k| w[0] * c[0][k] + w[1] * c[1][k] + w[2] * c[2][k]);
+            all.extend(place);
+        }
+    }
+    all
 }
 
 pub(super) fn check(
@@ -197,9 +234,7 @@ pub(super) fn check(
             mesh.vertices.point(b as usize),
         );
         let dl = near(p);
-        let pieces = steps([p, q, q], dl);
-        for i in 1..pieces {
-            let t = i as f64 / pieces as f64;
+        for t in shares(steps([p, q, q], dl)) {
             for k in 0..n {
                 place[k] = p[k] * (1.0 - t) + q[k] * t;
             }
@@ -219,7 +254,7 @@ pub(super) fn check(
         let mut triangle_far = false;
         let mut triangle_off = 0.0_f64;
         let gap = search.gap_at(t);
-        let mut weigh = |weights: [f64; 3], inner: bool| {
+        for (weights, inner) in weights(pieces) {
             for k in 0..n {
                 place[k] = weights[0] * c[0][k] + weights[1] * c[1][k] + weights[2] * c[2][k];
             }
@@ -234,23 +269,36 @@ pub(super) fn check(
                     off_values.push(height);
                 }
             }
-        };
-        weigh([1.0 / 3.0; 3], true);
-        for i in 0..=pieces {
-            for j in 0..=pieces - i {
-                let k = pieces - i - j;
-                let zeros = [i, j, k].iter().filter(|&&x| x == 0).count();
-                if zeros < 2 {
-                    let m = pieces as f64;
-                    weigh([i as f64 / m, j as f64 / m, k as f64 / m], zeros == 0);
-                }
-            }
         }
         if triangle_far {
             far.push(Place::Triangle(t));
         }
         if !within(triangle_off, off_limit) {
             off.push(Place::Triangle(t));
+        }
+    }
+    // edges that the points are beyond a gap from, where the surface goes another way
+    let chords = Chords {
+        search,
+        points,
+        cloud: &cloud,
+    };
+    for (e, &ends) in search.incidence.edges.iter().enumerate() {
+        if search.incidence.at_edge(e).len() < 2 {
+            continue;
+        }
+        let [a, b] = ends.map(|v| mesh.vertices.point(v as usize));
+        (place.iter_mut().zip(a.iter().zip(b))).for_each(|(x, (p, q))| *x = 0.5 * (p + q));
+        let beyond = ends.map(|v| search.gap_at_vertex(v));
+        let away = nearest(&place).map_or(0.0, |n| n.1.sqrt());
+        if away <= beyond[0].max(beyond[1]) + 4.0 * options.noise {
+            continue;
+        }
+        let dl = near(a);
+        let height = chords.height(ends).map_or(0.0, |height| height / dl);
+        if !within(height, limits.off_plane + 4.0 * options.noise / dl) {
+            off.push(Place::Edge(ends));
+            off_values.push(height);
         }
     }
     let distances = Distances::of(values);

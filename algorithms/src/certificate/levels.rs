@@ -54,6 +54,35 @@ impl Certificate {
             .chain(later.into_iter().flatten().flatten())
     }
 
+    /// Every place that is told, to be told in other coordinates. Those that are empty are none.
+    pub fn places_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        let faithful = self.faithful.as_mut();
+        let (gaps, stretches, theirs) = match faithful {
+            Some(report) => (
+                report.largest_gap.as_mut(),
+                report.largest_stretch.as_mut(),
+                Some(&mut report.violations),
+            ),
+            None => (None, None, None),
+        };
+        let later = [
+            self.edges.as_mut().map(|r| &mut r.violations),
+            self.links.as_mut().map(|r| &mut r.violations),
+            self.geometry.as_mut().map(|r| &mut r.violations),
+            self.cover.as_mut().map(|r| &mut r.violations),
+            theirs,
+            self.quality.as_mut().map(|r| &mut r.violations),
+            self.by_distances.as_mut().map(|r| &mut r.violations),
+        ];
+        let violations = self.indices.violations.iter_mut();
+        violations
+            .chain(later.into_iter().flatten().flatten())
+            .map(|violation| &mut violation.coordinates)
+            .chain(gaps.map(|gap| &mut gap.place))
+            .chain(stretches.map(|stretch| &mut stretch.place))
+            .filter(|place| !place.is_empty())
+    }
+
     /// The levels that were not asked: those that need places, where there are distances alone, and
     /// all later ones, where the arrays are unusable.
     pub fn unchecked(&self) -> Vec<Level> {

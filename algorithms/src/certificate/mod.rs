@@ -18,12 +18,14 @@
 
 mod bends;
 mod by_distances;
+mod chords;
 mod cover;
 mod crossing;
 mod display;
 mod distance;
 mod distance_report;
 mod edges;
+mod evidence;
 mod faithful;
 mod folds;
 mod frame;
@@ -55,6 +57,7 @@ pub use cover::{CoverReport, Distances};
 pub use crosscap_core::{Link, LinkKind};
 pub use distance_report::DistanceReport;
 pub use edges::EdgeReport;
+pub use evidence::{evidence_places, evidence_rows};
 pub use faithful::{FaithfulReport, Gap, Merged, Offset, Stretch};
 pub use geometry_report::GeometryReport;
 pub use heights::distances_to_mesh;
@@ -63,7 +66,7 @@ pub use kinds::{Level, ViolationKind};
 pub use levels::Certificate;
 pub use limits::Limits;
 pub use links::{LinkReport, SpecialPoint};
-pub use options::CertificateOptions;
+pub use options::{CertificateOptions, Excerpt};
 pub use places::Place;
 pub use quality::{Cell, QualityReport, Spread};
 pub use violation::{Verdict, Violation};
@@ -140,12 +143,16 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
         geometry::tree(mesh, &frame, &bare)
     };
     let points = options.points.filter(|p| !p.is_empty());
+    let of = (options.excerpt).map_or(points.map_or(0, PointCloud::len), |part| part.of);
     let feet = points.map(|points| {
-        let rows = cover::picks(points.len(), options.limits.points_tested);
+        let rows = match options.excerpt {
+            Some(part) => part.looked_at.to_vec(),
+            None => evidence_rows(of, &options.limits),
+        };
+        let rows = rows.into_iter();
         Footprints::new(mesh, &incidence, &frame, &all, &bare, points, rows)
     });
     let ground = feet.as_ref().map(|f| Ground::new(mesh, &incidence, f));
-    let of = points.map_or(0, PointCloud::len);
     let search = feet
         .as_ref()
         .zip(ground.as_ref())

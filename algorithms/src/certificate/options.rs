@@ -6,11 +6,24 @@ use super::links::SpecialPoint;
 use super::violation::Violation;
 use crosscap_core::{LinkKind, Mesh, PointCloud};
 
+/// A part of the points that says as much of a mesh as all of them: those that are looked at one by one
+/// ([`evidence_rows`](super::evidence_rows)), and the nearest to each of the places that are asked about
+/// ([`evidence_places`](super::evidence_places)).
+#[derive(Clone, Copy, Debug)]
+pub struct Excerpt<'a> {
+    /// How many points there are.
+    pub of: usize,
+    /// Rows of the part that are looked at one by one.
+    pub looked_at: &'a [usize],
+}
+
 /// What is known beside the mesh.
 #[derive(Clone, Debug)]
 pub struct CertificateOptions<'a> {
     /// The input points, all of them; without them the distances are not measured.
     pub points: Option<&'a PointCloud<f64>>,
+    /// What the points are, where they are a part of the input.
+    pub excerpt: Option<Excerpt<'a>>,
     /// Landmark separation dl, unit of the data; 3/4 of the median edge when left out.
     pub landmark_separation: Option<f64>,
     /// How many times that the separation at each input point is, where landmarks follow the spacing of the points;
@@ -39,6 +52,7 @@ impl Default for CertificateOptions<'_> {
     fn default() -> Self {
         Self {
             points: None,
+            excerpt: None,
             landmark_separation: None,
             separation_scale: None,
             unused_landmarks: &[],
@@ -103,6 +117,14 @@ impl CertificateOptions<'_> {
             ));
         }
         let rows = self.points.map_or(0, PointCloud::len);
+        if let Some(row) =
+            (self.excerpt).and_then(|part| part.looked_at.iter().find(|&&r| r >= rows))
+        {
+            return Some(Violation::whole(
+                ViolationKind::Options,
+                format!("row {row} of a part of the points that has {rows}"),
+            ));
+        }
         if let Some(scale) = self.separation_scale
             && !(scale.len() == rows && scale.iter().all(|s| *s > 0.0 && s.is_finite()))
         {

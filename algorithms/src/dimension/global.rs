@@ -90,26 +90,45 @@ impl<S: Scalar> WholeCloud<'_, S> {
         &self,
         estimator: &dyn DimensionEstimator<Scalar = S>,
     ) -> Result<Vec<Option<DimensionEstimate>>, Error> {
+        match self.local_where(estimator, &|_| true)? {
+            (answers, Some(sparse)) if answers.iter().all(Option::is_none) => Err(sparse),
+            (answers, _) => Ok(answers),
+        }
+    }
+
+    /// The same at the points that are `wanted`, `None` at all others; and why the first that is wanted and has no answer has none.
+    ///
+    /// # Errors
+    /// The first error that is not [`Error::SparseNeighborhood`].
+    pub fn local_where(
+        &self,
+        estimator: &dyn DimensionEstimator<Scalar = S>,
+        wanted: &(dyn Fn(usize) -> bool + Sync),
+    ) -> Result<(Vec<Option<DimensionEstimate>>, Option<Error>), Error> {
         self.scale.check()?;
         let radius = match self.scale {
             Scale::Nearest(_) => f64::INFINITY,
             Scale::Within(r) => r,
         };
         let found = self.map(Vec::new, |near, center| {
+            if !wanted(center) {
+                return Ok(None);
+            }
             self.neighborhood(center, near);
-            estimator.estimate(&Neighborhood {
+            let neighborhood = Neighborhood {
                 center,
                 radius,
                 neighbors: near,
                 metric: self.metric,
                 cloud: self.cloud,
-            })
+            };
+            estimator.estimate(&neighborhood).map(Some)
         });
         let mut sparse = None;
         let mut answers = Vec::with_capacity(found.len());
         for answer in found {
             answers.push(match answer {
-                Ok(estimate) => Some(estimate),
+                Ok(estimate) => estimate,
                 Err(error @ Error::SparseNeighborhood { .. }) => {
                     sparse.get_or_insert(error);
                     None
@@ -117,10 +136,7 @@ impl<S: Scalar> WholeCloud<'_, S> {
                 Err(error) => return Err(error),
             });
         }
-        match sparse {
-            Some(error) if answers.iter().all(Option::is_none) => Err(error),
-            _ => Ok(answers),
-        }
+        Ok((answers, sparse))
     }
 
     /// Writes the neighborhood of `i` at the scale into `out`, nearest first, `i` among them.

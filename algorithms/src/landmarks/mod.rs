@@ -3,7 +3,7 @@
 mod max_min;
 mod random;
 pub use max_min::MaxMin;
-pub use random::RandomGreedy;
+pub use random::{RandomGreedy, random_ranks};
 
 use crosscap_core::Error;
 

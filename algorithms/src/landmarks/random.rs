@@ -42,7 +42,7 @@ impl<S: Scalar> LandmarkSelector for RandomGreedy<S> {
             block(row, &mut blocked);
         }
         let mut order = candidates.to_vec();
-        order.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+        shuffle(&mut order, seed);
         let mut chosen = Vec::new();
         for row in order {
             if !blocked[row] {
@@ -56,4 +56,21 @@ impl<S: Scalar> LandmarkSelector for RandomGreedy<S> {
     fn name(&self) -> &str {
         "random"
     }
+}
+
+/// The random order of a seed. It depends on how many things there are alone.
+fn shuffle<T>(order: &mut [T], seed: u64) {
+    order.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+}
+
+/// The place of every row in the order in which [`RandomGreedy`] looks at the rows of a cloud, where all of them are
+/// candidates.
+pub fn random_ranks(count: usize, seed: u64) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..count as u32).collect();
+    shuffle(&mut order, seed);
+    let mut ranks = vec![0; count];
+    for (rank, row) in (0..).zip(order) {
+        ranks[row as usize] = rank;
+    }
+    ranks
 }

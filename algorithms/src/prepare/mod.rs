@@ -5,6 +5,7 @@
 //! | --- | --- |
 //! | how far apart are the points, place by place? | [`LocalSpacing`] |
 //! | how finely are the coordinates resolved? | [`Resolution`] |
+//! | which directions are noise alone? | [`Subspace`] |
 //! | which points lie on nothing? | [`Outliers`] |
 //! | how far do they scatter across the surface? | [`Noise`], and [`Projection`] takes it away |
 //!
@@ -22,10 +23,13 @@ mod resolution;
 mod scattered;
 mod sheet_fit;
 mod spacing;
+mod subspace;
 
 pub use noise::Noise;
 pub use outliers::Outliers;
 pub use preparation::{Preparation, PreparationSummary, Remedies};
 pub use projection::Projection;
 pub use resolution::Resolution;
+pub(crate) use sheet_fit::SheetFit;
 pub use spacing::LocalSpacing;
+pub use subspace::Subspace;

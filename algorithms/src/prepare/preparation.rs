@@ -1,6 +1,6 @@
 //! All that is found out about a cloud, and what is done about it.
 
-use super::{LocalSpacing, Noise, Outliers, Projection, Resolution};
+use super::{LocalSpacing, Noise, Outliers, Projection, Resolution, Subspace};
 use crate::execute::Execute;
 use crate::tuning::PreparationTuning;
 use crosscap_core::{Error, PointCloud, Scalar};
@@ -12,7 +12,7 @@ use std::fmt;
 pub struct Remedies {
     /// Leave outliers out.
     pub outliers: bool,
-    /// Move points onto fits where they are noisy.
+    /// Move points into the subspace that holds them but for noise, and onto fits where they are noisy.
     pub projection: bool,
 }
 
@@ -48,6 +48,8 @@ impl Remedies {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Preparation {
+    /// The subspace that the points were moved into, where all other directions are noise; everything else is said of the points in it.
+    pub subspace: Option<Subspace>,
     /// Spacing of the points that are kept.
     pub spacing: LocalSpacing,
     /// Resolution of their coordinates.
@@ -78,7 +80,8 @@ impl Preparation {
         tuning: &PreparationTuning,
         execute: &dyn Execute,
     ) -> Result<Self, Error> {
-        let mut spacing = LocalSpacing::of(cloud, execute)?;
+        let Held { moved, mut spacing } = held(cloud, remedies, tuning, execute)?;
+        let cloud = moved.as_ref().map_or(cloud, |moved| &moved.1);
         let outliers = Outliers::of(cloud, &spacing, &tuning.outliers, execute);
         let left_out = remedies.outliers && !outliers.is_empty();
         let (kept, rest) = if left_out {
@@ -98,6 +101,7 @@ impl Preparation {
             resolution: Resolution::of(&rest, &spacing, &tuning.resolution),
             projection: loud
                 .map(|noise| Projection::of(&rest, &noise, &tuning.projection, execute)),
+            subspace: moved.map(|moved| moved.0),
             spacing,
             outliers,
             left_out,
@@ -107,13 +111,37 @@ impl Preparation {
         })
     }
 
-    /// The points to work with: those that are kept, moved where they were moved.
+    /// The points to work with: those that are kept, moved where they were moved, in the coordinates of the
+    /// [subspace](Self::subspace) where there is one.
     pub fn points<S: Scalar>(&self, cloud: &PointCloud<S>) -> PointCloud<f64> {
         match &self.projection {
             Some(projection) => projection.cloud.clone(),
-            None if self.kept.len() == cloud.len() => cloud.cast(),
-            None => cloud.select(&self.kept).cast(),
+            None => {
+                let kept = match self.kept.len() == cloud.len() {
+                    true => cloud.cast(),
+                    false => cloud.select(&self.kept).cast(),
+                };
+                match &self.subspace {
+                    Some(subspace) => subspace.project(&kept),
+                    None => kept,
+                }
+            }
         }
+    }
+
+    /// Whether anything was done about the cloud.
+    pub fn changes(&self) -> bool {
+        self.left_out || self.projection.is_some() || self.subspace.is_some()
+    }
+
+    /// Root mean square of how far the points that were moved scatter across the surface, unit of the data; 0 where none were.
+    pub fn scatter(&self) -> f64 {
+        let aside = self.subspace.as_ref().map_or(0.0, Subspace::scatter);
+        let across = match (&self.projection, &self.noise) {
+            (Some(_), Some(noise)) => noise.deviation,
+            _ => 0.0,
+        };
+        aside.hypot(across)
     }
 
     /// The figures, for reports.
@@ -123,6 +151,7 @@ impl Preparation {
             variation: self.spacing.variation(),
             evenness: self.spacing.evenness(),
             step: self.resolution.step,
+            subspace: self.subspace.as_ref().map(|s| (s.dimension(), s.deviation)),
             outliers: self.outliers.rows.clone(),
             outliers_left_out: self.left_out,
             noise: self.noise.map(|n| n.deviation),
@@ -132,6 +161,36 @@ impl Preparation {
             tuning: self.tuning.clone(),
         }
     }
+}
+
+/// A cloud in the subspace that holds it, if it was moved there.
+struct Held<S: Scalar> {
+    moved: Option<(Subspace, PointCloud<S>)>,
+    spacing: LocalSpacing,
+}
+
+/// The spacing of a cloud, and where it scatters out of a subspace by enough the points in it.
+fn held<S: Scalar>(
+    cloud: &PointCloud<S>,
+    remedies: Remedies,
+    tuning: &PreparationTuning,
+    execute: &dyn Execute,
+) -> Result<Held<S>, Error> {
+    let allowed = remedies.projection.then_some(&tuning.subspace);
+    if let Some(subspace) = allowed.and_then(|tuning| Subspace::of(cloud, tuning)) {
+        let moved = subspace.project(cloud);
+        let spacing = LocalSpacing::of(&moved, execute)?;
+        if subspace.scatter() >= tuning.subspace.least_scatter * spacing.median() {
+            return Ok(Held {
+                moved: Some((subspace, moved)),
+                spacing,
+            });
+        }
+    }
+    Ok(Held {
+        moved: None,
+        spacing: LocalSpacing::of(cloud, execute)?,
+    })
 }
 
 /// What was found out about a cloud, and what was done about it, in figures.
@@ -146,6 +205,10 @@ pub struct PreparationSummary {
     pub evenness: f64,
     /// Step of the coordinates, unit of the data.
     pub step: f64,
+    /// Dimension of the subspace that the points were moved into, and their standard deviation in each direction out of it, unit
+    /// of the data; none where they stayed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub subspace: Option<(usize, f64)>,
     /// Rows of outliers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub outliers: Vec<usize>,
@@ -192,6 +255,12 @@ const NAMED: usize = 5;
 impl fmt::Display for PreparationSummary {
     /// A line for each thing that was done; nothing for a clean cloud.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some((dimension, deviation)) = self.subspace {
+            writeln!(
+                f,
+                "points moved into the {dimension}-dimensional subspace that holds them: every direction out of it is noise of {deviation:.3e}"
+            )?;
+        }
         if self.outliers_left_out {
             let named: Vec<String> = (self.outliers.iter().take(NAMED))
                 .map(usize::to_string)

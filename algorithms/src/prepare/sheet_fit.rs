@@ -20,7 +20,7 @@ const RIDGE: f64 = 1e-9;
 /// Over a ball of radius r a quadratic leaves terms of third order, so that what is left over is noise
 /// where r is small against the radius of curvature.
 #[derive(Clone, Debug, Default)]
-pub(super) struct SheetFit {
+pub(crate) struct SheetFit {
     dimension: usize,
     mean: Vec<f64>,
     /// Two orthonormal rows of N.
@@ -54,7 +54,7 @@ fn row(a: f64, b: f64) -> SVector<f64, TERMS> {
 }
 
 impl SheetFit {
-    pub(super) fn new(dimension: usize) -> Self {
+    pub(crate) fn new(dimension: usize) -> Self {
         let zeros = || vec![0.0; dimension];
         Self {
             dimension,
@@ -74,7 +74,7 @@ impl SheetFit {
 
     /// Fits the sheet to points (`dimension` numbers each) with their weights. `false` for fewer than 12
     /// points of positive weight, or points on a line. O(k N) for k points, a few dozen times.
-    pub(super) fn fit(&mut self, points: &[f64], weights: &[f64]) -> bool {
+    pub(crate) fn fit(&mut self, points: &[f64], weights: &[f64]) -> bool {
         let n = self.dimension;
         let total: f64 = weights.iter().sum();
         if weights.iter().filter(|w| **w > 0.0).count() < LEAST_POINTS {
@@ -208,7 +208,7 @@ impl SheetFit {
 
     /// Distance of `x` from the sheet along its normal space. Beyond `reach` in the plane the sheet is not
     /// extrapolated: what counts is then the distance from its rim.
-    pub(super) fn distance(&self, x: &[f64], reach: f64, offset: &mut Vec<f64>) -> f64 {
+    pub(crate) fn distance(&self, x: &[f64], reach: f64, offset: &mut Vec<f64>) -> f64 {
         let [a, b] = self.coordinates(x, offset);
         let out = a.hypot(b);
         let share = if out > reach { reach / out } else { 1.0 };
@@ -222,6 +222,38 @@ impl SheetFit {
         a.hypot(b)
     }
 
+    /// Orthonormal directions of the plane that touches the sheet across from `x`.
+    pub(crate) fn touching(&self, x: &[f64], offset: &mut Vec<f64>) -> [Vec<f64>; 2] {
+        let [a, b] = self.coordinates(x, offset).map(|c| c / self.extent);
+        let [mut first, mut second] = self.tangents.clone();
+        for (term, [along, across]) in [
+            (1, [1.0, 0.0]),
+            (2, [0.0, 1.0]),
+            (3, [2.0 * a, 0.0]),
+            (4, [b, a]),
+            (5, [0.0, 2.0 * b]),
+        ] {
+            subtract(&mut first, -along / self.extent, &self.terms[term]);
+            subtract(&mut second, -across / self.extent, &self.terms[term]);
+        }
+        normalize(&mut first);
+        let inside = dot(&first, &second);
+        subtract(&mut second, inside, &first);
+        normalize(&mut second);
+        [first, second]
+    }
+
+    /// The mean of the points that were fitted.
+    pub(crate) fn mean(&self) -> &[f64] {
+        &self.mean
+    }
+
+    /// The same without what only a next fit would use.
+    pub(crate) fn kept(mut self) -> Self {
+        self.centered = Vec::new();
+        self
+    }
+
     /// Subtracts the point of the sheet over the given coordinates from an offset.
     fn remove_sheet(&self, [a, b]: [f64; 2], offset: &mut [f64]) {
         subtract(offset, a, &self.tangents[0]);
@@ -233,7 +265,7 @@ impl SheetFit {
     }
 
     /// Moves `x` across the plane onto the sheet.
-    pub(super) fn project(&self, x: &mut [f64], offset: &mut Vec<f64>) {
+    pub(crate) fn project(&self, x: &mut [f64], offset: &mut Vec<f64>) {
         let inside = self.coordinates(x, offset);
         self.remove_sheet(inside, offset);
         for (x, o) in x.iter_mut().zip(&*offset) {

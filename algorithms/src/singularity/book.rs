@@ -73,7 +73,7 @@ impl Book {
             return Err(Rejection::NoRealSolution);
         }
         let (tuning, radius) = (&self.tuning, local.radius);
-        let book = PageSheets::read(&all, local.fitted, radius, |pages| {
+        let book = PageSheets::read(&all, local.fitted, radius, &tuning.pages, |pages| {
             let aside = pages.place - pages.along * pages.along.dot(&pages.place);
             let known = match (pages.out.len(), pages.pairs().len()) {
                 (3, sheets) => sheets == 0,

@@ -3,9 +3,9 @@
 use super::curve_end::{self, CurveEnd};
 use super::page_sheets::PageSheets;
 use super::patch::PATCH_POINTS;
-use super::rim::Rim;
+use super::rim::{EndingSheet, Rim};
 use super::tolerance::{Tolerance, at_least, vectors};
-use crate::tuning::{BookEndTuning, RimTuning};
+use crate::tuning::BookEndTuning;
 use crosscap_core::{
     Decomposition, Error, Link, LocalPoints, Located, Rejection, SingularityModel,
 };
@@ -54,10 +54,17 @@ impl BookEnd {
         at_least(2 * PATCH_POINTS, local)?;
         let all: Vec<Vector3<f64>> = vectors(local);
         let (fitted, radius) = (local.fitted, local.radius);
-        let first = PageSheets::read(&all, fitted, radius, |_| true);
+        let first = PageSheets::read(&all, fitted, radius, &self.tuning.pages, |_| true);
         first
             .and_then(|book| self.ended(book, &all, local))
-            .or_else(|_| self.ended(PageSheets::crossing(&all, fitted, radius)?, &all, local))
+            .or_else(|_| {
+                let pages = &self.tuning.pages;
+                self.ended(
+                    PageSheets::crossing(&all, fitted, radius, pages)?,
+                    &all,
+                    local,
+                )
+            })
     }
 
     /// The end of the curve of given pages.
@@ -84,20 +91,12 @@ impl BookEnd {
         } else {
             along
         };
-        let rims = rims(&book, points, [near, way], radius, &tuning.rim)?;
-        let crossings = rims
-            .iter()
-            .flatten()
-            .map(|rim| rim.crossing(tuning.crossing));
-        let crossings: Option<Vec<Vector3<f64>>> = crossings.collect();
-        let crossings = crossings.ok_or(Rejection::NoRealSolution)?;
-        let middle = crossings.iter().sum::<Vector3<f64>>() / crossings.len().max(1) as f64;
-        let end = meet(farthest_on(&book, points, way, middle, ep, &rims))?;
         let spacing = radius * (0.5 * PI * book.count() as f64 / points.len() as f64).sqrt();
         let most = (tuning.apart * spacing).max(tuning.apart_ep * ep);
-        let apart = (crossings.iter()).any(|x| crossings.iter().any(|y| (x - y).norm() > most));
+        let (middle, rims) = ending(&book, points, [near, way], [radius, most], tuning)?;
+        let end = meet(farthest_on(&book, points, way, middle, ep, &rims))?;
         let beyond = (end - center).norm() > tuning.end.reach * radius;
-        if crossings.is_empty() || apart || beyond || book.sine(&end) < tuning.sine {
+        if beyond || book.sine(&end) < tuning.sine {
             return Err(Rejection::NoRealSolution);
         }
         let names = Names::of(&book, &rims);
@@ -135,29 +134,70 @@ fn farthest_on(
     middle + way * beyond.fold(0.0, f64::max)
 }
 
-/// The boundary of every sheet that ends, `None` for those that go on; a single page cannot.
-fn rims(
+/// The points of a sheet, with the direction into it where it is on one side of the curve alone.
+fn sheet<'b>(book: &'b PageSheets, points: &[Vector3<f64>], k: usize) -> EndingSheet<'b> {
+    let own = points.iter().zip(&book.sheets.owner);
+    let own = own.filter(|x| usize::from(*x.1) == k).map(|x| *x.0);
+    let half = match book.of[k].pages {
+        [Some(page), None] => Some(book.pages.out[page]),
+        _ => None,
+    };
+    EndingSheet {
+        patch: &book.sheets.patches[k],
+        points: own.collect(),
+        half,
+    }
+}
+
+/// Where the curve ends, about, and the boundary of every sheet that does, `None` for those that go on; a single page cannot. `near`
+/// is a place on the curve, `way` its direction. Sheets on both sides of the curve have boundaries of their own, which it
+/// meets at most `most` apart; where there are single pages, the boundaries of all go through one place.
+fn ending(
     book: &PageSheets,
     points: &[Vector3<f64>],
     [near, way]: [Vector3<f64>; 2],
-    radius: f64,
-    tuning: &RimTuning,
-) -> Result<Vec<Option<Rim>>, Rejection> {
-    let rim = |(k, sheet): (usize, &super::page_sheets::PageSheet)| {
-        let own = points.iter().zip(&book.sheets.owner);
-        let own = own.filter(|x| usize::from(*x.1) == k).map(|x| *x.0);
-        let half = match sheet.pages {
-            [Some(page), None] => Some(book.pages.out[page]),
-            _ => None,
+    [radius, most]: [f64; 2],
+    tuning: &BookEndTuning,
+) -> Result<(Vector3<f64>, Vec<Option<Rim>>), Rejection> {
+    let count = book.of.len();
+    let mut rims: Vec<Option<Rim>> = Vec::with_capacity(count);
+    let mut ended: Vec<(usize, EndingSheet<'_>)> = Vec::new();
+    for k in 0..count {
+        let sheet = sheet(book, points, k);
+        let own = match sheet.half {
+            Some(_) => Ok(None),
+            None => Rim::of(&sheet, near, way, radius, &tuning.rim).map(Some),
         };
-        let patch = &book.sheets.patches[k];
-        match Rim::of(patch, own.collect(), near, way, half, radius, tuning) {
-            Ok(rim) => Ok(Some(rim)),
-            Err(Rejection::EmptyStratum { .. }) if half.is_none() => Ok(None),
-            Err(other) => Err(other),
+        match own {
+            Err(Rejection::EmptyStratum { .. }) => rims.push(None),
+            other => {
+                rims.push(other?);
+                ended.push((k, sheet));
+            }
         }
-    };
-    book.of.iter().enumerate().map(rim).collect()
+    }
+    if ended.iter().any(|(_, sheet)| sheet.half.is_some()) {
+        let (which, sheets): (Vec<usize>, Vec<EndingSheet<'_>>) = ended.into_iter().unzip();
+        let (end, found) =
+            Rim::all_through(&sheets, near, way, radius, tuning.crossing, &tuning.rim)?;
+        which
+            .into_iter()
+            .zip(found)
+            .for_each(|(k, rim)| rims[k] = Some(rim));
+        return Ok((end, rims));
+    }
+    let crossings = rims
+        .iter()
+        .flatten()
+        .map(|rim| rim.crossing(tuning.crossing));
+    let crossings: Option<Vec<Vector3<f64>>> = crossings.collect();
+    let crossings = crossings.ok_or(Rejection::NoRealSolution)?;
+    let apart = (crossings.iter()).any(|x| crossings.iter().any(|y| (x - y).norm() > most));
+    if crossings.is_empty() || apart {
+        return Err(Rejection::NoRealSolution);
+    }
+    let middle = crossings.iter().sum::<Vector3<f64>>() / crossings.len() as f64;
+    Ok((middle, rims))
 }
 
 /// Labels of the pages.
@@ -277,8 +317,11 @@ impl CurveEnd for Fit {
         let near_rim = inside.abs() < self.ep;
         let on_rim = rim.place(&self.book.sheets.patches[sheet], &x);
         match (curve, near_rim) {
-            (Some((_, off, _)), true) if off < self.ep => (POINT, self.end, 0),
-            (Some((place, off, _)), false) if off < self.ep => (CURVE, place, pages),
+            // Far behind the end a boundary that bends comes near the curve again.
+            (Some((_, off, before)), true) if off < self.ep && before < self.witness * self.ep => {
+                (POINT, self.end, 0)
+            }
+            (Some((place, off, _)), _) if off < self.ep => (CURVE, place, pages),
             (_, true) => (rim_name, on_rim, 1),
             (Some((place, off, _)), _) if off < inside => (cell, place, pages),
             _ => (cell, on_rim, 1),

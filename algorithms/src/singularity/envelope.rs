@@ -57,6 +57,61 @@ impl Envelope {
         None
     }
 
+    /// The parabola through the origin, `v = b t + c t^2`, of least mean height over the points with none of them above it,
+    /// no steeper at the origin than `slope` and no more bent than `bend` (of `c`); `None` where there is none.
+    ///
+    /// A linear program in two unknowns: one constraint after the other is taken in, and where it is not met the answer is on its
+    /// line (Seidel 1991). O(k^2) for k points.
+    pub(super) fn through_origin(points: &[[f64; 2]], slope: f64, bend: f64) -> Option<Self> {
+        // In units of the greatest slope and bend: both unknowns are from -1 to 1.
+        let row = |t: f64| [t * slope, t * t * bend];
+        let sum = (points.iter()).fold([0.0; 2], |sum, p| {
+            let [a, b] = row(p[0]);
+            [sum[0] + a, sum[1] + b]
+        });
+        let inner = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let rounding = 1e-12 * points.iter().map(|p| p[0].abs()).fold(0.0, f64::max) * slope;
+        let mut best = sum.map(|s| if s > 0.0 { -1.0 } else { 1.0 });
+        let walls = [
+            ([1.0, 0.0], -1.0),
+            ([-1.0, 0.0], -1.0),
+            ([0.0, 1.0], -1.0),
+            ([0.0, -1.0], -1.0),
+        ];
+        for (k, &[t, v]) in points.iter().enumerate() {
+            let a = row(t);
+            if inner(a, best) >= v - rounding {
+                continue;
+            }
+            let square = inner(a, a);
+            if square <= rounding * rounding {
+                return None;
+            }
+            let foot = a.map(|x| x * v / square);
+            let along = [-a[1] / square.sqrt(), a[0] / square.sqrt()];
+            let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+            let before = points[..k].iter().map(|&[t, v]| (row(t), v - rounding));
+            for (b, least) in before.chain(walls) {
+                let (rate, left) = (inner(b, along), least - inner(b, foot));
+                if rate > 0.0 {
+                    low = low.max(left / rate);
+                } else if rate < 0.0 {
+                    high = high.min(left / rate);
+                } else if left > rounding {
+                    return None;
+                }
+            }
+            if low > high {
+                return None;
+            }
+            let at = if inner(sum, along) > 0.0 { low } else { high };
+            best = [0, 1].map(|i| foot[i] + at * along[i]);
+        }
+        Some(Self {
+            terms: Vector3::new(0.0, best[0] * slope, best[1] * bend),
+        })
+    }
+
     pub(super) fn at(&self, t: f64) -> f64 {
         self.terms[0] + t * (self.terms[1] + t * self.terms[2])
     }
@@ -126,6 +181,28 @@ mod tests {
             let lift = points.iter().map(|p| p[1] - raw(p[0])).fold(f64::NEG_INFINITY, f64::max);
             let mean = |f: &dyn Fn(f64) -> f64| points.iter().map(|p| f(p[0])).sum::<f64>();
             prop_assert!(mean(&|t| e.at(t)) <= mean(&|t| raw(t) + lift) + 1e-6 * (1.0 + e.terms.amax()));
+        }
+
+        #[test]
+        fn through_the_origin_none_above_is_lower(
+            points in prop::collection::vec([0.0..1.0f64, -1.0..0.2f64], 2..40),
+            other in prop::array::uniform2(-1.0..1.0f64),
+        ) {
+            let (slope, bend) = (2.0, 1.5);
+            let other = [other[0] * slope, other[1] * bend];
+            let above = |b: f64, c: f64| points.iter().all(|p| p[0] * (b + c * p[0]) >= p[1] - 1e-9);
+            let mean = |b: f64, c: f64| points.iter().map(|p| p[0] * (b + c * p[0])).sum::<f64>();
+            match Envelope::through_origin(&points, slope, bend) {
+                Some(e) => {
+                    let [b, c] = [e.terms[1], e.terms[2]];
+                    prop_assert!(e.at(0.0) == 0.0 && above(b, c));
+                    prop_assert!(b.abs() <= slope * (1.0 + 1e-9) && c.abs() <= bend * (1.0 + 1e-9));
+                    if above(other[0], other[1]) {
+                        prop_assert!(mean(b, c) <= mean(other[0], other[1]) + 1e-6);
+                    }
+                }
+                None => prop_assert!(!points.iter().all(|p| p[0] * (slope + bend * p[0]) >= p[1] + 1e-9)),
+            }
         }
     }
 

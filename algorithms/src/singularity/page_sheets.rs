@@ -6,16 +6,12 @@ use super::pages::Pages;
 use super::plane_pair::PlanePair;
 use super::sheets::Sheets;
 use super::tolerance::Tolerance;
-use crate::tuning::CurveEndTuning;
+use crate::tuning::{CurveEndTuning, PagesTuning};
 use crosscap_core::Rejection;
 use nalgebra::Vector3;
 
 /// Most pages that labels are given to.
 pub(super) const MOST_PAGES: usize = 60;
-/// Sheets that meet at a smaller angle (sine) do not locate a curve.
-const LEAST_SINE: f64 = 0.15;
-/// Where the sides of a sheet are told apart, in radii from the curve.
-const OUT: f64 = 0.5;
 
 /// One sheet: a page, or two that continue each other.
 #[derive(Clone, Copy, Debug)]
@@ -45,9 +41,10 @@ impl PageSheets {
         all: &[Vector3<f64>],
         fitted: usize,
         radius: f64,
+        tuning: &PagesTuning,
         asked: impl Fn(&Pages) -> bool,
     ) -> Result<Self, Rejection> {
-        let pages = Pages::read(&all[..fitted], radius)
+        let pages = Pages::read(&all[..fitted], radius, tuning)
             .filter(|pages| pages.out.len() <= MOST_PAGES && asked(pages))
             .ok_or(Rejection::NoRealSolution)?;
         Ok(Self::over(pages, all, fitted, radius))
@@ -61,8 +58,9 @@ impl PageSheets {
         all: &[Vector3<f64>],
         fitted: usize,
         radius: f64,
+        tuning: &PagesTuning,
     ) -> Result<Self, Rejection> {
-        let pages = crossing(&all[..fitted], radius)?;
+        let pages = crossing(&all[..fitted], radius, tuning)?;
         Ok(Self::over(pages, all, fitted, radius))
     }
 
@@ -116,7 +114,7 @@ impl PageSheets {
         let along = pairs
             .map(|(a, b)| normals[a].cross(&normals[b]))
             .max_by(|x, y| x.norm_squared().total_cmp(&y.norm_squared()))
-            .filter(|along| along.norm() > LEAST_SINE)?;
+            .filter(|along| along.norm() > self.pages.tuning.sine)?;
         let along = along.normalize() * along.dot(&self.pages.along).signum();
         let out = self.pages.out.iter();
         let out = out.map(|out| (out - along * along.dot(out)).normalize());
@@ -124,6 +122,7 @@ impl PageSheets {
             place,
             along,
             out: out.collect(),
+            tuning: self.pages.tuning,
         })
     }
 
@@ -134,7 +133,7 @@ impl PageSheets {
         let divider = (0..planes.len())
             .max_by(|&a, &b| sine(a).total_cmp(&sine(b)))
             .unwrap_or(sheet);
-        let out = self.pages.place + self.pages.out[first] * (OUT * self.radius);
+        let out = self.pages.place + self.pages.out[first] * (self.pages.tuning.out * self.radius);
         PageSheet {
             pages: [None; 2],
             divider,
@@ -196,7 +195,7 @@ impl PageSheets {
         let count = self.of.len();
         (which.iter_mut().enumerate()).for_each(|(k, w)| *w = k);
         self.sheets
-            .meet(&which[..count], 2, from, reach, LEAST_SINE)
+            .meet(&which[..count], 2, from, reach, self.pages.tuning.sine)
     }
 
     /// Greatest sine of the angle of two sheets at a place.
@@ -228,12 +227,21 @@ impl PageSheets {
 }
 
 /// The four pages of two planes that cross at an angle too small for gaps between them.
-fn crossing(points: &[Vector3<f64>], radius: f64) -> Result<Pages, Rejection> {
+fn crossing(
+    points: &[Vector3<f64>],
+    radius: f64,
+    tuning: &PagesTuning,
+) -> Result<Pages, Rejection> {
     let pair = PlanePair::direct(points.iter().copied(), radius)?;
     let (along, place) = (pair.line(&Vector3::zeros())).ok_or(Rejection::NoRealSolution)?;
     let out = pair.normals.map(|normal| along.cross(&normal).normalize());
     let out = vec![out[0], out[1], -out[0], -out[1]];
-    Ok(Pages { place, along, out })
+    Ok(Pages {
+        place,
+        along,
+        out,
+        tuning: *tuning,
+    })
 }
 
 /// The pages of every sheet.

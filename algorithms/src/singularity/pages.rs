@@ -1,35 +1,15 @@
 //! Pages: the half sheets that meet in a curve, read from the points around it.
 
+use crate::tuning::PagesTuning;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
 
 /// Nearest points that a normal is estimated from, the point itself among them.
 const NEAREST: usize = 8;
-/// Greatest share of the second variance that the third one has where the nearest points lie on one page.
-const FLAT: f64 = 0.05;
 /// Fewest normals.
 const LEAST_NORMALS: usize = 12;
 /// Rounds of finding the curve, each with less weight for normals that disagree with it.
 const ROUNDS: usize = 4;
-/// Distance of a page from the curve, in radii, and part of a normal along it from which normals count less.
-const ASIDE: f64 = 0.05;
-const TILT: f64 = 0.15;
-/// Greatest mean square of the part of the normals along the curve, and least in the second direction: with less the
-/// pages are one sheet.
-const ALONG: f64 = 0.06;
-const ACROSS: f64 = 0.04;
-/// The first while all normals weigh the same: next to the curve the nearest points of a grid lie across it, and so do
-/// their normals. Of three sheets that cross in a point a third does.
-const ALONG_AT_FIRST: f64 = 0.32;
-/// Points nearer to the curve than this share of the radius do not tell their page.
-const NEAR: f64 = 0.3;
-/// Least angle between two pages in which there is no point, and greatest angle under which one page is seen.
-const GAP: f64 = 0.2;
-const WIDEST: f64 = 0.6;
-/// Least share of the points that a page holds.
-const LEAST_SHARE: f64 = 0.03;
-/// Two pages at an angle that is straight up to this are one sheet.
-const STRAIGHT: f64 = 0.3;
 
 /// The line in which pages meet, and where they lie about it.
 #[derive(Clone, Debug)]
@@ -40,6 +20,8 @@ pub(super) struct Pages {
     pub(super) along: Vector3<f64>,
     /// Unit directions from the line into the pages, at right angles to it.
     pub(super) out: Vec<Vector3<f64>>,
+    /// How they were read.
+    pub(super) tuning: PagesTuning,
 }
 
 /// A piece of a page: where it is and its unit normal.
@@ -57,25 +39,35 @@ impl Pages {
     /// the line the points then lie in a few directions, with gaps between.
     ///
     /// O(k^2) for k points.
-    pub(super) fn read(points: &[Vector3<f64>], radius: f64) -> Option<Self> {
-        let mut elements = elements(points);
+    pub(super) fn read(points: &[Vector3<f64>], radius: f64, tuning: &PagesTuning) -> Option<Self> {
+        let mut elements = elements(points, tuning.flat);
         if elements.len() < LEAST_NORMALS {
             return None;
         }
-        let mut line = axis(&elements, ALONG_AT_FIRST)?;
+        let mut line = axis(&elements, tuning.along_at_first, tuning.across)?;
         for round in 1..ROUNDS {
             let (place, axes) = line;
             for e in &mut elements {
-                let aside = e.normal.dot(&(e.place - place)) / (ASIDE * radius);
-                let tilt = e.normal.dot(&axes[0]) / TILT;
+                let aside = e.normal.dot(&(e.place - place)) / (tuning.aside * radius);
+                let tilt = e.normal.dot(&axes[0]) / tuning.tilt;
                 e.weight = 1.0 / ((1.0 + aside * aside) * (1.0 + tilt * tilt));
             }
             let last = round + 1 == ROUNDS;
-            line = axis(&elements, if last { ALONG } else { ALONG_AT_FIRST })?;
+            let most = if last {
+                tuning.along
+            } else {
+                tuning.along_at_first
+            };
+            line = axis(&elements, most, tuning.across)?;
         }
         let (place, [along, first, second]) = line;
-        let out = directions(points, &place, [first, second], radius)?;
-        Some(Self { place, along, out })
+        let out = directions(points, &place, [first, second], radius, tuning)?;
+        Some(Self {
+            place,
+            along,
+            out,
+            tuning: *tuning,
+        })
     }
 
     /// Pairs of pages that are one sheet, those that are straightest first, each page once.
@@ -84,7 +76,7 @@ impl Pages {
         for (b, second) in self.out.iter().enumerate() {
             for (a, first) in self.out[..b].iter().enumerate() {
                 let bend = PI - first.angle(second);
-                if bend < STRAIGHT {
+                if bend < self.tuning.straight {
                     straight.push((bend, [a, b]));
                 }
             }
@@ -101,7 +93,7 @@ impl Pages {
 }
 
 /// Pieces about the points, where they are flat.
-fn elements(points: &[Vector3<f64>]) -> Vec<Element> {
+fn elements(points: &[Vector3<f64>], flat: f64) -> Vec<Element> {
     let mut out = Vec::with_capacity(points.len());
     for center in points {
         let mut near = [(f64::INFINITY, 0usize); NEAREST];
@@ -114,13 +106,13 @@ fn elements(points: &[Vector3<f64>]) -> Vec<Element> {
             }
         }
         let own = near.iter().filter(|n| n.0.is_finite()).map(|n| points[n.1]);
-        out.extend(element(own));
+        out.extend(element(own, flat));
     }
     out
 }
 
 /// The plane of a few points; `None` where they lie in none.
-fn element(own: impl Iterator<Item = Vector3<f64>> + Clone) -> Option<Element> {
+fn element(own: impl Iterator<Item = Vector3<f64>> + Clone, flat: f64) -> Option<Element> {
     let count = own.clone().count() as f64;
     let place = own.clone().sum::<Vector3<f64>>() / count;
     let mut spread = Matrix3::zeros();
@@ -129,7 +121,7 @@ fn element(own: impl Iterator<Item = Vector3<f64>> + Clone) -> Option<Element> {
         spread += d * d.transpose();
     }
     let (values, axes) = ordered(spread);
-    (values[0] <= FLAT * values[1]).then(|| Element {
+    (values[0] <= flat * values[1]).then(|| Element {
         place,
         normal: axes[0],
         weight: 1.0,
@@ -148,8 +140,8 @@ fn ordered(matrix: Matrix3<f64>) -> ([f64; 3], [Vector3<f64>; 3]) {
 }
 
 /// The place and the axes of the line that the planes of all pieces have in common: its direction comes first. `most`
-/// is the greatest mean square of the part of the normals along it.
-fn axis(elements: &[Element], most: f64) -> Option<(Vector3<f64>, [Vector3<f64>; 3])> {
+/// is the greatest mean square of the part of the normals along it, `across` the least in the second direction.
+fn axis(elements: &[Element], most: f64, across: f64) -> Option<(Vector3<f64>, [Vector3<f64>; 3])> {
     let mut spread = Matrix3::zeros();
     let mut total = 0.0;
     for e in elements {
@@ -157,7 +149,7 @@ fn axis(elements: &[Element], most: f64) -> Option<(Vector3<f64>, [Vector3<f64>;
         total += e.weight;
     }
     let (values, axes) = ordered(spread / total);
-    if values[0] > most || values[1] < ACROSS {
+    if values[0] > most || values[1] < across {
         return None;
     }
     let mut normal = Matrix3::zeros();
@@ -178,30 +170,31 @@ fn directions(
     place: &Vector3<f64>,
     [first, second]: [Vector3<f64>; 2],
     radius: f64,
+    tuning: &PagesTuning,
 ) -> Option<Vec<Vector3<f64>>> {
     let flat = points.iter().map(|x| {
         let d = x - place;
         [first.dot(&d), second.dot(&d)]
     });
     let mut turns: Vec<f64> = flat
-        .filter(|[x, y]| x.hypot(*y) > NEAR * radius)
+        .filter(|[x, y]| x.hypot(*y) > tuning.near * radius)
         .map(|[x, y]| y.atan2(x))
         .collect();
     turns.sort_by(f64::total_cmp);
     let count = turns.len();
     // Starting behind a gap no page goes over the end.
     let next = |k: usize| turns[(k + 1) % count] + if k + 1 == count { TAU } else { 0.0 };
-    let from = (0..count).find(|&k| next(k) - turns[k] > GAP)? + 1;
+    let from = (0..count).find(|&k| next(k) - turns[k] > tuning.gap)? + 1;
     turns.rotate_left(from % count);
     let start = turns[0];
     turns
         .iter_mut()
         .for_each(|t| *t = start + (*t - start).rem_euclid(TAU));
-    let pages = turns.chunk_by(|a, b| b - a <= GAP);
-    let least = LEAST_SHARE * count as f64;
+    let pages = turns.chunk_by(|a, b| b - a <= tuning.gap);
+    let least = tuning.share * count as f64;
     let mut out = Vec::new();
     for page in pages.filter(|page| page.len() as f64 >= least) {
-        if page[page.len() - 1] - page[0] > WIDEST {
+        if page[page.len() - 1] - page[0] > tuning.widest {
             return None;
         }
         let (s, c) = libm::sincos(page[page.len() / 2]);
@@ -237,7 +230,8 @@ mod tests {
             let turns: Vec<f64> = (0..count)
                 .map(|k| 0.3 + TAU * k as f64 / count as f64)
                 .collect();
-            let pages = Pages::read(&book(&turns, [0.05, -0.1]), 1.0).unwrap();
+            let pages =
+                Pages::read(&book(&turns, [0.05, -0.1]), 1.0, &PagesTuning::MEASURED).unwrap();
             assert_eq!(pages.out.len(), count);
             assert!(pages.along.z.abs() > 0.999);
             assert!((pages.place - Vector3::new(0.05, -0.1, pages.place.z)).norm() < 0.02);
@@ -254,18 +248,23 @@ mod tests {
             );
         }
         // One sheet that stands on another.
-        let pages = Pages::read(&book(&[0.0, 1.6, PI], [0.0; 2]), 1.0).unwrap();
+        let pages = Pages::read(
+            &book(&[0.0, 1.6, PI], [0.0; 2]),
+            1.0,
+            &PagesTuning::MEASURED,
+        )
+        .unwrap();
         assert_eq!((pages.out.len(), pages.pairs().len()), (3, 1));
     }
 
     #[test]
     fn one_sheet_and_three_that_cross_in_a_point_have_no_line() {
         let flat = book(&[0.0, PI], [0.0; 2]);
-        assert!(Pages::read(&flat, 1.0).is_none());
+        assert!(Pages::read(&flat, 1.0, &PagesTuning::MEASURED).is_none());
         let turned = |x: &Vector3<f64>| Vector3::new(x.z, x.x, x.y);
         let mut three = flat.clone();
         three.extend(flat.iter().map(turned));
         three.extend(flat.iter().map(|x| turned(&turned(x))));
-        assert!(Pages::read(&three, 1.0).is_none());
+        assert!(Pages::read(&three, 1.0, &PagesTuning::MEASURED).is_none());
     }
 }

@@ -14,6 +14,60 @@ const STEPS: usize = 12;
 /// Strips that the area beyond the boundary is summed over.
 const STRIPS: usize = 64;
 
+/// Share of an interval at which it is cut in a search by golden sections, and how often.
+const GOLDEN: f64 = 0.381_966_011_250_105;
+const SECTIONS: usize = 32;
+
+/// A sheet that ends on a boundary.
+pub(super) struct EndingSheet<'p> {
+    pub(super) patch: &'p QuadraticPatch,
+    pub(super) points: Vec<Vector3<f64>>,
+    /// For a sheet on one side of the curve alone the direction into it.
+    pub(super) half: Option<Vector3<f64>>,
+}
+
+/// A sheet with directions in its tangent plane: along the boundary, about, and out of it.
+struct Laid<'s> {
+    points: &'s [Vector3<f64>],
+    along: Vector3<f64>,
+    out: Vector3<f64>,
+}
+
+impl EndingSheet<'_> {
+    fn laid(&self, near: Vector3<f64>, out: Vector3<f64>) -> Laid<'_> {
+        let normal = self.patch.height(&near).1.normalize();
+        let out = (out - normal * normal.dot(&out)).normalize();
+        Laid {
+            points: &self.points,
+            along: normal.cross(&out),
+            out,
+        }
+    }
+}
+
+impl Laid<'_> {
+    /// The points in the plane, about a place.
+    fn flat(&self, origin: Vector3<f64>) -> Vec<[f64; 2]> {
+        let at = |x: &Vector3<f64>| [self.along.dot(&(x - origin)), self.out.dot(&(x - origin))];
+        self.points.iter().map(at).collect()
+    }
+}
+
+/// Where a convex function is least, between minus and plus `radius`; it is infinite up to some place.
+fn lowest(height: impl Fn(f64) -> f64, radius: f64) -> f64 {
+    let [mut low, mut high] = [-radius, radius];
+    for _ in 0..SECTIONS {
+        let step = GOLDEN * (high - low);
+        let [first, second] = [low + step, high - step].map(&height);
+        if first.is_infinite() || first > second {
+            low += step;
+        } else {
+            high -= step;
+        }
+    }
+    high
+}
+
 /// Where a sheet ends: the lowest parabola in a tangent plane that has all its points on one side.
 pub(super) struct Rim {
     origin: Vector3<f64>,
@@ -26,21 +80,20 @@ pub(super) struct Rim {
 }
 
 impl Rim {
-    /// The boundary of the sheet that holds `points`, within `radius` of the middle; `near` is a place on the curve, `way` its
-    /// direction towards the boundary. A sheet on one side of the curve alone is on that of `half`.
+    /// The boundary of a sheet, within `radius` of the middle; `near` is a place on the curve, `way` its direction towards the
+    /// boundary.
     ///
     /// # Errors
     /// [`Rejection::EmptyStratum`] where the points go on beyond any such curve, [`Rejection::NoRealSolution`] where
     /// there is none.
     pub(super) fn of(
-        patch: &QuadraticPatch,
-        points: Vec<Vector3<f64>>,
+        sheet: &EndingSheet<'_>,
         near: Vector3<f64>,
         way: Vector3<f64>,
-        half: Option<Vector3<f64>>,
         radius: f64,
         tuning: &RimTuning,
     ) -> Result<Self, Rejection> {
+        let EndingSheet { patch, points, .. } = sheet;
         let normal = patch.height(&near).1.normalize();
         let upright = |out: Vector3<f64>| {
             let along = normal.cross(&out);
@@ -64,17 +117,98 @@ impl Rim {
         if rim.envelope.bend().abs() * radius > tuning.bend {
             return Err(Rejection::NoRealSolution);
         }
-        let side = half.map(|out| rim.along.dot(&out));
-        let beyond = rim.area_beyond(radius, side);
-        let whole = PI * radius * radius * if half.is_some() { 0.5 } else { 1.0 };
+        rim.enough(sheet, radius, tuning)?;
+        Ok(rim)
+    }
+
+    /// The boundaries of several sheets, which all meet the curve in one place, and that place; `near` is a place on the curve, `way`
+    /// its direction towards the end.
+    ///
+    /// A sheet on one side of the curve does not hold a parabola of its own: nothing keeps it down beyond the curve. All sheets
+    /// together do, for no point of any of them lies beyond the end. Of all places on the curve it is the one for which the parabolas through it
+    /// have the least mean height over all points: a linear program with one unknown in common, convex in that one, over which
+    /// it is searched by golden sections.
+    ///
+    /// # Errors
+    /// [`Rejection::NoRealSolution`] where there are no such parabolas, or a sheet has no point near the end where chance does not explain it;
+    /// [`Rejection::EmptyStratum`] where points go on beyond one of them.
+    pub(super) fn all_through(
+        sheets: &[EndingSheet<'_>],
+        near: Vector3<f64>,
+        way: Vector3<f64>,
+        radius: f64,
+        least: f64,
+        tuning: &RimTuning,
+    ) -> Result<(Vector3<f64>, Vec<Self>), Rejection> {
+        let slope = (1.0 / (least * least) - 1.0).sqrt();
+        let bend = 0.5 * tuning.bend / radius;
+        let laid: Vec<Laid> = sheets.iter().map(|sheet| sheet.laid(near, way)).collect();
+        let height = |end: f64| -> f64 {
+            let each = laid.iter().map(|sheet| {
+                let flat = sheet.flat(near + way * end);
+                let found = Envelope::through_origin(&flat, slope, bend);
+                found.map_or(f64::INFINITY, |e| {
+                    flat.iter().map(|p| end + e.at(p[0])).sum::<f64>()
+                })
+            });
+            each.sum()
+        };
+        let end = near + way * lowest(height, radius);
+        let mut rims = Vec::with_capacity(sheets.len());
+        for (sheet, mut laid) in sheets.iter().zip(laid) {
+            let mut envelope = None;
+            for _ in 0..=ROUNDS {
+                let flat = laid.flat(end);
+                let found = Envelope::through_origin(&flat, slope, bend)
+                    .ok_or(Rejection::NoRealSolution)?;
+                let tangent = found.slope(0.0);
+                let rim = Self {
+                    origin: end,
+                    along: laid.along,
+                    out: laid.out,
+                    way,
+                    envelope: found,
+                };
+                envelope = Some(rim);
+                laid = sheet.laid(end, (laid.out - laid.along * tangent).normalize());
+            }
+            let rim = envelope.ok_or(Rejection::NoRealSolution)?;
+            // Each round turns the boundary: at last it may run along the curve.
+            if rim.crossing(least).is_none() {
+                return Err(Rejection::NoRealSolution);
+            }
+            let inside = rim.enough(sheet, radius, tuning)?;
+            let nearest = (sheet.points.iter())
+                .map(|x| (x - end).norm())
+                .fold(f64::INFINITY, f64::min);
+            let share = if sheet.half.is_some() { 0.25 } else { 0.5 };
+            let about = share * PI * nearest * nearest;
+            if sheet.points.len() as f64 * about / inside > tuning.open {
+                return Err(Rejection::NoRealSolution);
+            }
+            rims.push(rim);
+        }
+        Ok((end, rims))
+    }
+
+    /// The area of the sheet inside, where points are missing beyond.
+    fn enough(
+        &self,
+        sheet: &EndingSheet<'_>,
+        radius: f64,
+        tuning: &RimTuning,
+    ) -> Result<f64, Rejection> {
+        let side = sheet.half.map(|out| self.along.dot(&out));
+        let beyond = self.area_beyond(radius, side);
+        let whole = PI * radius * radius * if sheet.half.is_some() { 0.5 } else { 1.0 };
         let inside = (whole - beyond).max(f64::MIN_POSITIVE);
-        if points.len() as f64 * beyond / inside < tuning.missing {
-            return Err(Rejection::EmptyStratum {
+        match (sheet.points.len() as f64 * beyond / inside) < tuning.missing {
+            true => Err(Rejection::EmptyStratum {
                 stratum: 0,
                 found: 0,
-            });
+            }),
+            false => Ok(inside),
         }
-        Ok(rim)
     }
 
     /// Area of the disc of `radius` about the place on the curve beyond the parabola, or of its half on the side of the

@@ -1,15 +1,18 @@
 //! Landmarks where the surface bends more than triangles of the usual size can follow.
 
-use super::producer::WaistProducer;
 use crate::tuning::RefinementTuning;
-use crosscap_core::{Complex, Landmark, Neighbor, NeighborhoodOracle, Row, Scalar, Table};
+use crosscap_core::{
+    Complex, Landmark, Neighbor, NeighborhoodOracle, PointCloud, Row, Scalar, Table,
+};
 
 /// A triangulation beside the points that it should follow.
 pub struct Refinement<'r, S: Scalar> {
     /// Neighborhoods of places in straight lines, between the coordinates that triangles are drawn in.
     pub near: &'r dyn NeighborhoodOracle<Scalar = S>,
-    /// Says where every row lies, and which may be landmarks.
-    pub producer: &'r dyn WaistProducer<S>,
+    /// Where every row lies; `None` where rows have no places, and nothing is added.
+    pub places: Option<&'r PointCloud<f64>>,
+    /// Which rows may be landmarks.
+    pub may_add: &'r dyn Fn(Row) -> bool,
     /// Rows of the landmarks.
     pub rows: &'r Table<Landmark, Row>,
     /// Landmark separation dl.
@@ -22,17 +25,47 @@ pub struct Refinement<'r, S: Scalar> {
 
 impl<S: Scalar> Refinement<'_, S> {
     /// Rows that should be landmarks as well: one where the middle of a triangle or of an edge is far from
-    /// every point. None where every point is one already, or the producer names no places.
+    /// every point. None where every point is one already, or rows have no places.
     ///
     /// O(log n) for each triangle, O(L) for each that strays, with L landmarks.
     pub fn rows_where_astray(&self, complex: &Complex) -> Vec<Row> {
         let mut added = Vec::new();
-        let Some(places) = self.producer.places() else {
+        let Some(places) = self.places else {
             return added;
         };
         if self.rows.len() == places.len() {
             return added;
         }
+        self.each_middle(complex, places, |t, middle| {
+            let corners = t.map(|v| places.point(self.rows[Landmark::from(v)].index()));
+            let first = self.rows[Landmark::from(t[0])];
+            let missing = self.missing(first, corners, middle, &added);
+            added.extend(missing);
+        });
+        added
+    }
+
+    /// The middles that are asked about, one after the other.
+    pub fn middles(&self, complex: &Complex) -> Vec<S> {
+        let mut all = Vec::new();
+        if let Some(places) = self.places {
+            self.each_middle(complex, places, |_, middle| all.extend_from_slice(middle));
+        }
+        all
+    }
+
+    /// How far from a middle that strays the surface is looked for, at least.
+    pub fn look(&self) -> f64 {
+        self.tuning.look * self.tuning.growth * self.dl
+    }
+
+    /// Visits the middles of all triangles and of their edges, each with its triangle.
+    fn each_middle(
+        &self,
+        complex: &Complex,
+        places: &PointCloud<f64>,
+        mut visit: impl FnMut(&[u32; 3], &[S]),
+    ) {
         let place = |v: u32| places.point(self.rows[Landmark::from(v)].index());
         let mut middle: Vec<S> = Vec::new();
         for t in &complex.triangles {
@@ -43,15 +76,9 @@ impl<S: Scalar> Refinement<'_, S> {
                     let sum: f64 = corners.iter().map(|&v| place(v)[k]).sum();
                     S::of(sum / corners.len() as f64)
                 }));
-                added.extend(self.missing(
-                    self.rows[Landmark::from(a)],
-                    t.map(place),
-                    &middle,
-                    &added,
-                ));
+                visit(t, &middle);
             }
         }
-        added
     }
 
     /// Landmark separation at a row.
@@ -69,7 +96,7 @@ impl<S: Scalar> Refinement<'_, S> {
             growth,
             ..
         } = *self.tuning;
-        let places = self.producer.places()?;
+        let places = self.places?;
         let dl = self.separation(row);
         let mut reach = stray * dl;
         if self.near.is_near(middle, S::of(reach)) {
@@ -97,8 +124,7 @@ impl<S: Scalar> Refinement<'_, S> {
     pub fn rows_left_behind(&self, heights: &[f64]) -> Vec<Row> {
         let mut added = Vec::new();
         if self
-            .producer
-            .places()
+            .places
             .is_none_or(|places| places.len() != heights.len())
         {
             return added;
@@ -130,12 +156,12 @@ impl<S: Scalar> Refinement<'_, S> {
 
     /// Whether a row may become a landmark: it lies in a cell, so far from all others and from those `added`.
     fn is_free(&self, row: Row, added: &[Row], separation: f64) -> bool {
-        let Some(places) = self.producer.places() else {
+        let Some(places) = self.places else {
             return false;
         };
         let limit = separation.powi(2);
         let mut others = self.rows.iter().chain(added);
-        self.producer.may_add(row)
+        (self.may_add)(row)
             && others.all(|r| places.squared_distance(r.index(), row.index()) >= limit)
     }
 }

@@ -12,7 +12,8 @@ use super::skeleton::Skeleton;
 use super::strata::Strata;
 use super::stratification::Stratification;
 use crosscap_core::{
-    Error, Landmark, LandmarkSelector, PointCloud, Row, Scalar, StratifiedLandmarks, Table,
+    CellNeighborhood, Error, Landmark, LandmarkSelector, PointCloud, Row, Scalar,
+    StratifiedLandmarks, Table,
 };
 
 /// Parameters of the stratification.
@@ -103,6 +104,69 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         })
     }
 
+    /// A surface without curves, given its landmarks.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for lengths that are not positive.
+    pub(crate) fn among(
+        analyzer: &'p Analyzer<'a, S>,
+        charts: ChartSpace<'a, S>,
+        landmarks: Vec<Row>,
+        options: &StratifyOptions,
+    ) -> Result<Self, Error> {
+        options.check()?;
+        let space = &analyzer.space;
+        let strata = Strata::as_found(&Analysis::of_surface(space.len()), space.places());
+        let skeleton = Skeleton::default();
+        let (tuning, dl) = (&analyzer.tuning.cells, options.dl);
+        let places = strata.places();
+        let labels = Labels::new(
+            strata.len(),
+            places,
+            &[],
+            tuning.label_reach,
+            analyzer.execute,
+        );
+        Ok(Self {
+            contacts: Contacts::new(space, &strata, &skeleton, tuning, dl),
+            analyzer,
+            strata,
+            labels,
+            skeleton,
+            chosen: landmarks,
+            charts,
+            options: options.clone(),
+        })
+    }
+
+    /// The neighborhoods of some of the landmarks of a surface without curves.
+    ///
+    /// # Errors
+    /// [`Error::Law`] for what a plug-in breaks.
+    pub(crate) fn neighborhoods(
+        &self,
+        wanted: &Table<Landmark, bool>,
+    ) -> Result<Vec<CellNeighborhood>, Error> {
+        let rows = self.rows(&[]);
+        let (found, _) = self.around(&rows).find(&|k| wanted[k])?;
+        Ok(found)
+    }
+
+    /// What the neighborhoods of landmarks are found from.
+    fn around<'n>(&'n self, rows: &'n Table<Landmark, Row>) -> Neighborhoods<'n, 'a, S> {
+        Neighborhoods {
+            analyzer: self.analyzer,
+            strata: &self.strata,
+            skeleton: &self.skeleton,
+            labels: &self.labels,
+            contacts: &self.contacts,
+            charts: self.charts,
+            rows,
+            reach: self.options.tri_eps,
+            dl: self.options.dl,
+        }
+    }
+
     /// Rows of the landmarks: the skeleton's, the chosen ones, and those of `extra` that are regular.
     fn rows(&self, extra: &[Row]) -> Table<Landmark, Row> {
         let mut rows = self.skeleton.rows().clone();
@@ -133,18 +197,7 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
         let mut strata = Table::filled(rows.len(), 2);
         strata.as_mut_slice()[..on_curves].fill(1);
         strata.as_mut_slice()[..self.skeleton.corners()].fill(0);
-        let (neighborhoods, cut_edges) = Neighborhoods {
-            analyzer: self.analyzer,
-            strata: &self.strata,
-            skeleton: &self.skeleton,
-            labels: &self.labels,
-            contacts: &self.contacts,
-            charts: self.charts,
-            rows: &rows,
-            reach: self.options.tri_eps,
-            dl: self.options.dl,
-        }
-        .find()?;
+        let (neighborhoods, cut_edges) = self.around(&rows).find(&|_| true)?;
         let distances = within_charts(
             self.analyzer,
             &self.strata,

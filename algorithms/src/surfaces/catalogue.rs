@@ -1,5 +1,6 @@
 //! The catalogue of sample surfaces.
 
+use super::faceted::faceted_surfaces;
 use super::further::further_surfaces;
 use super::paper::paper_surfaces;
 use super::singular::singular_surfaces;
@@ -11,6 +12,7 @@ pub fn catalogue() -> Vec<SampleSurface> {
     let mut all = paper_surfaces();
     all.extend(further_surfaces());
     all.extend(singular_surfaces());
+    all.extend(faceted_surfaces());
     all
 }
 

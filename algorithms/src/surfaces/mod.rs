@@ -23,6 +23,7 @@
 mod books;
 mod catalogue;
 mod curves;
+mod faceted;
 mod features;
 mod flat;
 mod further;
@@ -47,6 +48,7 @@ mod truth;
 mod two_holed_torus;
 
 pub use catalogue::catalogue;
+pub use faceted::Triangle;
 pub use features::{Drawing, Feature, FeatureCloud, Spot};
 pub use flat::{HalfDisc, Rectangle, Segment, SwissRoll};
 pub use henneberg::Henneberg;

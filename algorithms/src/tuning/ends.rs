@@ -1,5 +1,6 @@
 //! When the models of the ends of curves, and of curves by themselves, believe a fit.
 
+use super::PagesTuning;
 use serde::Serialize;
 
 /// What the models of the ends of curves have in common.
@@ -64,6 +65,8 @@ pub struct RimTuning {
     pub missing: f64,
     /// Greatest curvature of the parabola, in units of one over the radius.
     pub bend: f64,
+    /// Points that a sheet would have about the end before it has one, at most: that many are missing by chance in one of e^6 places.
+    pub open: f64,
 }
 
 impl RimTuning {
@@ -71,6 +74,7 @@ impl RimTuning {
     pub const MEASURED: Self = Self {
         missing: 10.0,
         bend: 3.0,
+        open: 6.0,
     };
 }
 
@@ -79,6 +83,8 @@ impl RimTuning {
 pub struct BookTuning {
     /// What it has in common with ends of curves: the share of points astray.
     pub end: CurveEndTuning,
+    /// How its pages are read.
+    pub pages: PagesTuning,
     /// Farthest that the curve is from the middle of the points, in radii: farther out pages are missing in the ball.
     pub off_center: f64,
     /// Least share of the points that a page holds.
@@ -95,6 +101,7 @@ impl BookTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         end: CurveEndTuning::MEASURED,
+        pages: PagesTuning::MEASURED,
         off_center: 0.35,
         share: 0.04,
         step: 0.6,
@@ -108,6 +115,8 @@ impl BookTuning {
 pub struct BookEndTuning {
     /// What it has in common with other ends.
     pub end: CurveEndTuning,
+    /// How its pages are read.
+    pub pages: PagesTuning,
     /// Boundaries of the sheets.
     pub rim: RimTuning,
     /// Least share of the points that each page holds.
@@ -129,6 +138,7 @@ impl BookEndTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         end: CurveEndTuning::MEASURED,
+        pages: PagesTuning::MEASURED,
         rim: RimTuning::MEASURED,
         share: 0.03,
         sine: 0.34,

@@ -7,6 +7,7 @@
 mod ends;
 mod front;
 mod models;
+mod pages;
 mod preparation;
 
 pub use ends::{BookEndTuning, BookTuning, CurveEndTuning, PinchPointTuning, RimTuning};
@@ -15,12 +16,14 @@ pub use models::{
     BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,
     TwoPlanesTuning, YJunctionTuning,
 };
+pub use pages::PagesTuning;
 
 pub use preparation::{
     NoiseTuning, OutlierTuning, PreparationTuning, ProjectionTuning, ResolutionTuning,
+    SubspaceTuning,
 };
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// All of them. [`Tuning::MEASURED`] is what the program runs with.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -125,8 +128,12 @@ pub struct EndTuning {
     /// A point of a curve is an end when the middle of the curve within the radius is off by more than this;
     /// it is 0.5 at the end of a straight curve, and 0 inside.
     pub shift: f64,
-    /// Radii of the balls in which a model is asked, one after another until it answers.
-    pub radii: [f64; 5],
+    /// Radii of the balls in which a model is asked, one after another until it answers. The last is smaller than the first: where a
+    /// surface is narrow, wide balls hold corners and curves that no model of an end knows.
+    pub radii: [f64; 6],
+    /// How far behind the outermost point of a curve another one is that balls are laid about as well, in eps. Where a plate of 12
+    /// spacings stood through another, its ends were 0.5 eps inside, and the ball about the outermost point held the rim of the other one.
+    pub behind: f64,
     /// Widest ball, where a model asks for a wider one.
     pub widest: f64,
     /// A model that needs a wider ball gets one wider by this factor than it asks for.
@@ -151,7 +158,8 @@ impl EndTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         shift: 0.3,
-        radii: [1.0, 1.4, 2.0, 2.8, 4.0],
+        radii: [1.0, 1.4, 2.0, 2.8, 4.0, 0.7],
+        behind: 0.5,
         widest: 5.0,
         spare: 1.08,
         off_center: 0.15,
@@ -179,6 +187,13 @@ pub struct SkeletonTuning {
     pub end_separation: f64,
     /// A chain is joined to a corner, or two free ends to each other, over at most this.
     pub join: f64,
+    /// A curve without a surface is joined to a corner or to another end over no longer stretch without points than this, unless
+    /// chance explains it.
+    pub bare_gap: f64,
+    /// Probability of such a stretch, beside the spacings of the curve, below which chance does not.
+    pub bare_chance: f64,
+    /// Points this far from the straight way between two places lead along it.
+    pub beside_way: f64,
     /// How many separations along a curve are tried: the closing gap of a closed curve depends on the
     /// separation, and long edges are the bad ones.
     pub stretches: usize,
@@ -197,6 +212,9 @@ impl SkeletonTuning {
         bridge: 2.0,
         end_separation: 0.6,
         join: 3.0,
+        bare_gap: 1.0,
+        bare_chance: 1e-3,
+        beside_way: 0.5,
         stretches: 16,
         stretch_step: 0.025,
         label_spacing: 0.2,
@@ -204,7 +222,7 @@ impl SkeletonTuning {
 }
 
 /// What decides which landmarks are in the neighborhood of which. Shares are of dl unless said otherwise.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellTuning {
     /// Labels are believed up to this share of the radius of the fit.
     pub label_reach: f64,

@@ -10,6 +10,8 @@ use serde::Serialize;
 /// All of them. [`PreparationTuning::MEASURED`] is what the program runs with.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PreparationTuning {
+    /// Directions that are noise alone.
+    pub subspace: SubspaceTuning,
     /// Steps of the coordinates.
     pub resolution: ResolutionTuning,
     /// Points that lie on nothing.
@@ -23,6 +25,7 @@ pub struct PreparationTuning {
 impl PreparationTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
+        subspace: SubspaceTuning::MEASURED,
         resolution: ResolutionTuning::MEASURED,
         outliers: OutlierTuning::MEASURED,
         noise: NoiseTuning::MEASURED,
@@ -34,6 +37,38 @@ impl Default for PreparationTuning {
     fn default() -> Self {
         Self::MEASURED
     }
+}
+
+/// What decides whether a cloud lies in a subspace but for noise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SubspaceTuning {
+    /// Fewest directions of noise: the spread of so many variances tells noise from a shape that is small in them.
+    pub least_rest: usize,
+    /// Most coordinates: their covariance is taken apart in the cube of it.
+    pub most_coordinates: usize,
+    /// Most points that the covariance is taken of.
+    pub points: usize,
+    /// Fewest points for every coordinate.
+    pub points_for_coordinate: usize,
+    /// How far beyond the bounds of chance the variances of noise may spread, as a factor.
+    pub spare: f64,
+    /// Least variance of the shape in its narrowest direction, in those of the noise: with less that direction is no shape for sure.
+    pub gap: f64,
+    /// Distance from the subspace, in spacings, from which points are moved into it.
+    pub least_scatter: f64,
+}
+
+impl SubspaceTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        least_rest: 5,
+        most_coordinates: 600,
+        points: 20_000,
+        points_for_coordinate: 8,
+        spare: 1.3,
+        gap: 6.0,
+        least_scatter: 0.1,
+    };
 }
 
 /// What decides whether coordinates are rounded to a step.

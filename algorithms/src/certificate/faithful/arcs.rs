@@ -108,7 +108,7 @@ fn evenness(arcs: &[Arc]) -> Evenness {
         }
     }
     let points = lengths.len();
-    Evenness::of(lengths, points, false)
+    Evenness::of(lengths, points, 1.0)
 }
 
 impl Arc {

@@ -15,7 +15,7 @@ pub(super) mod footprints;
 mod gaps;
 pub(super) mod ground;
 mod nearby;
-mod opening;
+pub(super) mod opening;
 mod overlay;
 mod patch;
 mod rim;

@@ -6,7 +6,7 @@
 use super::chance;
 use super::ground::COUNTED;
 use super::search::Search;
-use crosscap_core::{PointCloud, squared_distance};
+use crosscap_core::{Mesh, PointCloud, squared_distance};
 use std::f64::consts::PI;
 
 impl Search<'_> {
@@ -15,19 +15,26 @@ impl Search<'_> {
     pub fn is_opening(&self, points: &PointCloud<f64>, around: &[u32], significance: f64) -> bool {
         let density = around.iter().map(|&v| self.ground.density[v as usize]);
         let least = density.fold(f64::INFINITY, f64::min) / (self.finer * self.finer);
-        let corner = |v: u32| self.mesh.vertices.point(v as usize);
-        let mean = |of: &[u32]| -> Vec<f64> {
-            let sum = |k: usize| of.iter().map(|&v| corner(v)[k]).sum::<f64>();
-            let width = self.mesh.vertices.dimension();
-            (0..width).map(|k| sum(k) / of.len() as f64).collect()
-        };
-        let pairs = (0..around.len()).flat_map(|k| (0..k).map(move |l| [around[k], around[l]]));
-        let places = std::iter::once(mean(around)).chain(pairs.map(|pair| mean(&pair)));
-        places.into_iter().any(|place| {
+        places_amid(self.mesh, around).any(|place| {
             let squares = points.iter().map(|p| squared_distance(p, &place));
             let expected = PI * least * squares.fold(f64::INFINITY, f64::min);
             let measure = chance::known(self.even.random(expected), COUNTED);
-            chance::disc(points.len() as f64, measure) < significance
+            chance::disc(self.of as f64, measure) < significance
         })
     }
+}
+
+/// Places amid the vertices of a boundary: their mean and the middles between two.
+pub(in crate::certificate) fn places_amid<'a>(
+    mesh: &'a Mesh,
+    around: &'a [u32],
+) -> impl Iterator<Item = Vec<f64>> + 'a {
+    let corner = |v: u32| mesh.vertices.point(v as usize);
+    let mean = move |of: &[u32]| -> Vec<f64> {
+        let sum = |k: usize| of.iter().map(|&v| corner(v)[k]).sum::<f64>();
+        let width = mesh.vertices.dimension();
+        (0..width).map(|k| sum(k) / of.len() as f64).collect()
+    };
+    let pairs = (0..around.len()).flat_map(move |k| (0..k).map(move |l| [around[k], around[l]]));
+    std::iter::once(mean(around)).chain(pairs.map(move |pair| mean(&pair)))
 }

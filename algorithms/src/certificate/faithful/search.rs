@@ -45,6 +45,8 @@ pub(in crate::certificate) struct Search<'a> {
     pub(super) varies: bool,
     /// Largest empty disc that chance leaves, as a radius in spacings.
     largest: f64,
+    /// How many points there are.
+    pub(super) of: usize,
     /// Spacing of all points beside that of those that are looked at.
     pub(super) finer: f64,
 }
@@ -79,6 +81,7 @@ impl<'a> Search<'a> {
             even: Evenness::RANDOM,
             varies: false,
             largest: 0.0,
+            of,
             finer: (feet.len() as f64 / of.max(1) as f64).sqrt(),
         };
         search.varies = search.varies();
@@ -212,7 +215,7 @@ impl<'a> Search<'a> {
         Evenness::of(
             measures,
             self.points(),
-            Evenness::is_clustered(self.nearest()),
+            Evenness::clustering(self.nearest()),
         )
     }
 

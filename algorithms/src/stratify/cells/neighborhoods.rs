@@ -99,9 +99,14 @@ impl<S: Scalar> Extent<'_, S> {
 }
 
 impl<S: Scalar> Neighborhoods<'_, '_, S> {
-    /// The neighborhoods, landmarks of cells first, and how many edges of the graph were cut.
-    pub(in crate::stratify) fn find(&self) -> Result<(Vec<CellNeighborhood>, usize), Error> {
-        let jobs = self.jobs();
+    /// The neighborhoods of the landmarks that are `wanted`, landmarks of cells first, and how many edges of the graph
+    /// were cut.
+    pub(in crate::stratify) fn find(
+        &self,
+        wanted: &dyn Fn(Landmark) -> bool,
+    ) -> Result<(Vec<CellNeighborhood>, usize), Error> {
+        let mut jobs = self.jobs();
+        jobs.retain(|job| wanted(job.landmark));
         let members = self.plain(&jobs)?;
         let mut progress = Progress { jobs, members };
         let cut = self.flood(&mut progress)?;

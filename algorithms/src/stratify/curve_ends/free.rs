@@ -5,20 +5,30 @@ use crate::stratify::site::StratumKind;
 use crate::stratify::strata::Strata;
 use crosscap_core::{Neighbor, Row, Scalar};
 
+/// An end of a double curve that stops at nothing.
+pub(super) struct End {
+    /// The row that is out farthest.
+    pub(super) row: Row,
+    /// One of the curve some way behind it: sheets that end are taken to cross a little beyond their ends as well.
+    pub(super) behind: Option<Row>,
+    /// Radius of the analysis there.
+    pub(super) eps: f64,
+}
+
 /// A point of a curve that may be its end.
 struct Candidate {
     row: Row,
+    behind: Option<Row>,
     /// How far the middle of the curve about it is off: half way between where it reaches to both sides.
     shift: f64,
     /// Radius of the analysis there.
     eps: f64,
 }
 
-/// Ends of double curves that stop at nothing, each with the radius of the analysis there: those that are ends
-/// most come first, and no two are in one ball.
+/// Ends of double curves that stop at nothing: those that are ends most come first, and no two are in one ball.
 ///
 /// O(c n) for c points of double curves with n neighbors each.
-pub(super) fn ends<S: Scalar>(analyzer: &Analyzer<'_, S>, strata: &Strata) -> Vec<(Row, f64)> {
+pub(super) fn ends<S: Scalar>(analyzer: &Analyzer<'_, S>, strata: &Strata) -> Vec<End> {
     let Some(places) = strata.places() else {
         return Vec::new();
     };
@@ -28,11 +38,14 @@ pub(super) fn ends<S: Scalar>(analyzer: &Analyzer<'_, S>, strata: &Strata) -> Ve
         .filter_map(|row| candidate(analyzer, strata, row, &mut near))
         .collect();
     found.sort_by(|a, b| b.shift.total_cmp(&a.shift).then(a.row.cmp(&b.row)));
-    let mut ends: Vec<(Row, f64)> = Vec::new();
-    for Candidate { row, eps, .. } in found {
-        let free = |x: &(Row, f64)| places.squared_distance(row.index(), x.0.index()) > eps * eps;
+    let mut ends: Vec<End> = Vec::new();
+    for Candidate {
+        row, behind, eps, ..
+    } in found
+    {
+        let free = |x: &End| places.squared_distance(row.index(), x.row.index()) > eps * eps;
         if ends.iter().all(free) {
-            ends.push((row, eps));
+            ends.push(End { row, behind, eps });
         }
     }
     ends
@@ -76,7 +89,14 @@ fn candidate<S: Scalar>(
         (square(x) + ahead * ahead - across) / (2.0 * ahead)
     });
     let shift = (ahead + behind.fold(0.0, f64::min)) / 2.0;
-    (shift > analyzer.tuning.ends.shift * eps).then_some(Candidate { row, shift, eps })
+    let away = |x: Row| (square(x).sqrt() - analyzer.tuning.ends.behind * eps).abs();
+    let behind = curve().min_by(|&a, &b| away(a).total_cmp(&away(b)).then(a.cmp(&b)));
+    (shift > analyzer.tuning.ends.shift * eps).then_some(Candidate {
+        row,
+        behind: behind.filter(|&other| other != row),
+        shift,
+        eps,
+    })
 }
 
 /// Whether a row is a point in which double curves stop. One at which only curves without a surface do is

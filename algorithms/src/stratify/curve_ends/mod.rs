@@ -15,7 +15,8 @@ pub(super) use wards::Wards;
 use super::analysis::{Analyzer, Scratch};
 use super::site::{Site, StratumKind};
 use super::strata::Strata;
-use crosscap_core::{Error, Scalar};
+use crosscap_core::{Error, Row, Scalar};
+use free::End;
 use part::Answer;
 
 /// A region, and what becomes of its rows.
@@ -41,9 +42,9 @@ pub(super) fn explain<S: Scalar>(
     let tuning = &analyzer.tuning.ends;
     let mut scratch = Scratch::default();
     let mut answers: Vec<Answer> = Vec::new();
-    for (row, eps) in free::ends(analyzer, strata) {
-        let found = tuning.radii.iter().find_map(|factor| {
-            let one = |&m: &usize| fitter.about_end(m, row, factor * eps, eps, &mut scratch);
+    for End { row, behind, eps } in free::ends(analyzer, strata) {
+        let mut asked = |row: Row, radius: f64| {
+            let one = |&m: &usize| fitter.about_end(m, row, radius, eps, &mut scratch);
             // The order of the models changes nothing.
             let better = |a: &Found, b: &Found| {
                 let [a, b] = [&a.0.fit, &b.0.fit];
@@ -51,7 +52,10 @@ pub(super) fn explain<S: Scalar>(
                 order.then(a.parameters.cmp(&b.parameters))
             };
             models.iter().filter_map(one).min_by(better)
-        });
+        };
+        let mut about =
+            |row: Row| (tuning.radii.iter()).find_map(|factor| asked(row, factor * eps));
+        let found = about(row).or_else(|| about(behind?));
         let Some((region, settled)) = found else {
             continue;
         };
@@ -64,6 +68,11 @@ pub(super) fn explain<S: Scalar>(
                 eps,
             });
         }
+    }
+    // A pinch point has no boundary: its balls are wide enough for its sheets to open, and what was seen there before is wrong.
+    let sheets_end = |a: &&mut Answer| a.region.fit.cells_at_curve.contains(&1);
+    for answer in answers.iter_mut().filter(sheets_end) {
+        answer.keep_clear(fitter.cloud, |row| !strata.is_regular(row), tuning.overlap);
     }
     part::part(fitter.cloud, &mut answers, tuning.overlap);
     for answer in answers {

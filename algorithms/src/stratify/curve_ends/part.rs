@@ -26,16 +26,45 @@ pub(super) fn part<S: Scalar>(cloud: &PointCloud<S>, answers: &mut [Answer], ove
         })
         .collect();
     for (answer, limit) in answers.iter_mut().zip(limits) {
-        let region = &mut answer.region;
-        if limit < region.reach {
-            let far = |x: &(Row, Label)| region.far(cloud, x.0);
-            let (own, mut beyond): (Vec<_>, Vec<_>) =
-                (region.known().into_iter()).partition(|x| far(x) < limit);
-            beyond.retain(|x| far(x) < limit + overlap * answer.eps);
-            (region.labels, region.beyond) = (own, beyond);
-            region.reach = limit;
-            answer.settled.retain(|x| region.label(x.row).is_some());
+        answer.cut(cloud, limit, overlap);
+    }
+}
+
+impl Answer {
+    /// Cuts the region where another curve begins that its model knows nothing of: farther from the point than the radius of
+    /// the analysis, where the model says that a row is inside a cell, and the analysis, which did not see the end from there, that it is on a
+    /// curve.
+    pub(super) fn keep_clear<S: Scalar>(
+        &mut self,
+        cloud: &PointCloud<S>,
+        is_on_curve: impl Fn(Row) -> bool,
+        overlap: f64,
+    ) {
+        let inside = self
+            .settled
+            .iter()
+            .filter(|x| x.on.is_none() && x.beside.is_none());
+        let on_another = inside.filter(|x| is_on_curve(x.row));
+        let far = on_another.map(|x| self.region.far(cloud, x.row));
+        let limit = far
+            .filter(|&far| far > self.eps)
+            .fold(f64::INFINITY, f64::min);
+        self.cut(cloud, limit, overlap);
+    }
+
+    /// Leaves of the region what is nearer than `limit` to its point.
+    fn cut<S: Scalar>(&mut self, cloud: &PointCloud<S>, limit: f64, overlap: f64) {
+        let region = &mut self.region;
+        if limit >= region.reach {
+            return;
         }
+        let far = |x: &(Row, Label)| region.far(cloud, x.0);
+        let (own, mut beyond): (Vec<_>, Vec<_>) =
+            (region.known().into_iter()).partition(|x| far(x) < limit);
+        beyond.retain(|x| far(x) < limit + overlap * self.eps);
+        (region.labels, region.beyond) = (own, beyond);
+        region.reach = limit;
+        self.settled.retain(|x| region.label(x.row).is_some());
     }
 }
 
@@ -72,6 +101,24 @@ mod tests {
             region,
             eps: reach,
         }
+    }
+
+    #[test]
+    fn a_region_ends_where_another_curve_begins() {
+        let cloud = PointCloud::new(1, (0..31).map(|k| f64::from(k) / 10.0).collect()).unwrap();
+        let reach_with = |on: &dyn Fn(usize) -> bool| {
+            let mut answer = answer(&cloud, 1.52, 1.5);
+            answer.eps = 0.5;
+            answer.keep_clear(&cloud, |row| on(row.index()), 0.2);
+            let rows = answer.region.rows();
+            assert!(rows.eq(answer.settled.iter().map(|x| x.row)));
+            answer.region.reach
+        };
+        // What is said of rows near the point was said by balls that hold it.
+        for near in [12, 15, 20] {
+            assert_eq!(reach_with(&|row| row == near), 1.5);
+        }
+        assert!((reach_with(&|row| row == 6 || row == 26) - 0.92).abs() < 1e-12);
     }
 
     #[test]

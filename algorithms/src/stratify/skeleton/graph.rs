@@ -7,6 +7,7 @@ use super::nodes::Nodes;
 use super::sweep::components;
 use crate::stratify::site::StratumKind;
 use crosscap_core::{Label, Row, Scalar, Table};
+use std::collections::BTreeMap;
 
 /// Nodes and corners, joined where a curve goes from one to the other.
 pub(super) struct CurveGraph {
@@ -15,6 +16,8 @@ pub(super) struct CurveGraph {
     pub(super) links: Vec<Vec<(usize, f64)>>,
     /// The connected parts, corners left out, each in order.
     pub(super) parts: Vec<Vec<usize>>,
+    /// Corners that a curve does not reach although the fit about them says so, once for each such curve.
+    pub(super) unreached: Vec<Row>,
 }
 
 impl CurveGraph {
@@ -23,11 +26,13 @@ impl CurveGraph {
         ground: &Ground<'_, '_, S>,
         nodes: Nodes,
     ) -> Self {
-        let links = near_nodes(ground, &nodes);
+        let mut links = near_nodes(ground, &nodes);
+        part_bare(ground, &nodes, &mut links);
         let mut out = Self {
             parts: components(&links, nodes.rows.len()),
             nodes,
             links,
+            unreached: Vec::new(),
         };
         out.join_corners(skeleton, ground);
         out.bridge(ground);
@@ -39,7 +44,7 @@ impl CurveGraph {
         self.nodes.rows.len()
     }
 
-    /// Joins each corner to the nearest node of every branch. A part of a curve that does not reach
+    /// Joins each corner to the nearest node of every branch, one without a surface only where points lead there. A part of a curve that does not reach
     /// farther than dl from the corner is none: it has no room for a landmark, and would stand between
     /// the corner and its curve.
     fn join_corners<S: Scalar>(&mut self, skeleton: &Skeleton, ground: &Ground<'_, '_, S>) {
@@ -74,6 +79,10 @@ impl CurveGraph {
             let own = self.links.len();
             self.links.push(Vec::new());
             for (_, k, d) in branches {
+                if self.nodes.is_bare(ground, k) && !ground.is_followed(corner, rows[k], 1) {
+                    self.unreached.push(corner);
+                    continue;
+                }
                 self.links[own].push((k, d));
                 self.links[k].push((own, d));
             }
@@ -157,4 +166,44 @@ fn near_nodes<S: Scalar>(ground: &Ground<'_, '_, S>, nodes: &Nodes) -> Vec<Vec<(
         }
     }
     links
+}
+
+/// Parts curves without a surface where no points lead from one node to the next: of the links that are longer than what is
+/// joined over in any case, those between parts that hang together by shorter ones are taken away, unless the shortest of them is
+/// followed by points. O(links log links), and a look at the points for each pair of such parts.
+fn part_bare<S: Scalar>(
+    ground: &Ground<'_, '_, S>,
+    nodes: &Nodes,
+    links: &mut [Vec<(usize, f64)>],
+) {
+    let short = ground.tuning.bare_gap * ground.dl;
+    let is_long = |a: usize, d: f64| d > short && nodes.is_bare(ground, a);
+    let kept = |a: usize| {
+        links[a]
+            .iter()
+            .copied()
+            .filter(move |&(_, d)| !is_long(a, d))
+    };
+    let near: Vec<Vec<(usize, f64)>> = (0..links.len()).map(|a| kept(a).collect()).collect();
+    let mut part = vec![0; links.len()];
+    for (p, members) in components(&near, links.len()).iter().enumerate() {
+        members.iter().for_each(|&k| part[k] = p);
+    }
+    let mut shortest: BTreeMap<[usize; 2], (f64, usize, usize)> = BTreeMap::new();
+    for (a, row) in links.iter().enumerate() {
+        for &(b, d) in row.iter().filter(|&&(b, _)| part[a] < part[b]) {
+            let best = shortest.entry([part[a], part[b]]).or_insert((d, a, b));
+            if d < best.0 {
+                *best = (d, a, b);
+            }
+        }
+    }
+    shortest.retain(|_, &mut (d, a, b)| {
+        let [from, to] = [a, b].map(|k| nodes.rows[k]);
+        is_long(a, d) && !ground.is_followed(from, to, links.len())
+    });
+    let pair = |a: usize, b: usize| [part[a].min(part[b]), part[a].max(part[b])];
+    for (a, row) in links.iter_mut().enumerate() {
+        row.retain(|&(b, _)| !shortest.contains_key(&pair(a, b)));
+    }
 }

@@ -2,7 +2,12 @@
 
 use super::Skeleton;
 use super::ground::Ground;
+use crate::orthogonal::dot;
 use crosscap_core::{CurveEdge, Landmark, Scalar, Table};
+
+/// Cosine of the sharpest turn of a curve without a surface where a gap of its points is joined over: one sharper than 135 degrees
+/// goes back along the curve, from one end of a segment to the other.
+const SHARPEST: f64 = -std::f64::consts::FRAC_1_SQRT_2;
 
 impl Skeleton {
     /// Joins ends of chains that stop at nothing, and landmarks of curves that no chain reached, nearest
@@ -23,7 +28,13 @@ impl Skeleton {
             for &b in &free[..x] {
                 let joined = self.edges.iter().any(|e| e.landmarks() == [b, a]);
                 let d = ground.distance(self.rows[a], self.rows[b]);
-                if cells[a] == cells[b] && d <= reach && !joined {
+                let goes_on = || {
+                    cells[a] > 0
+                        || ground.is_followed(self.rows[a], self.rows[b], self.rows.len())
+                            && !self.turns_back(ground, a, b)
+                            && !self.turns_back(ground, b, a)
+                };
+                if cells[a] == cells[b] && d <= reach && !joined && goes_on() {
                     pairs.push((d, b, a));
                 }
             }
@@ -37,5 +48,48 @@ impl Skeleton {
                 self.edges.push(edge);
             }
         }
+    }
+
+    /// Whether the way from the end of a chain to another landmark goes back along the chain.
+    fn turns_back<S: Scalar>(
+        &self,
+        ground: &Ground<'_, '_, S>,
+        end: Landmark,
+        to: Landmark,
+    ) -> bool {
+        let place = |k: Landmark| ground.places.point(self.rows[k].index());
+        let mut before = self.edges.iter().filter_map(|edge| match edge.landmarks() {
+            [a, b] if b == end => Some(a),
+            [a, b] if a == end => Some(b),
+            _ => None,
+        });
+        before.any(|back| cosine([place(back), place(end), place(to)]) < SHARPEST)
+    }
+}
+
+/// Cosine of the angle between the ways from the first place to the second and from there to the third; 1 where one has no
+/// length.
+fn cosine([from, at, to]: [&[f64]; 3]) -> f64 {
+    let way = |p: &[f64], q: &[f64]| -> Vec<f64> { p.iter().zip(q).map(|(x, y)| y - x).collect() };
+    let (first, second) = (way(from, at), way(at, to));
+    let lengths = (dot(&first, &first) * dot(&second, &second)).sqrt();
+    if lengths > 0.0 {
+        dot(&first, &second) / lengths
+    } else {
+        1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_end_goes_on_round_a_triangle_and_not_back_along_a_segment() {
+        let places = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.75_f64.sqrt()], [0.1, 0.01]];
+        let turn = |k: [usize; 3]| cosine(k.map(|k| &places[k][..]));
+        assert!((turn([0, 1, 2]) + 0.5).abs() < 1e-12 && turn([0, 1, 2]) > SHARPEST);
+        assert!(turn([0, 1, 3]) < SHARPEST);
+        assert_eq!(turn([0, 0, 1]), 1.0);
     }
 }

@@ -40,6 +40,7 @@ impl Skeleton {
     pub(super) fn lay_kind<S: Scalar>(&mut self, ground: &Ground<'_, '_, S>, kind: StratumKind) {
         let nodes = Nodes::of(self, ground, kind);
         let graph = CurveGraph::new(self, ground, nodes);
+        self.unreached.extend(&graph.unreached);
         for members in &graph.parts {
             let part = Part::of(ground, &graph, members);
             let before = self.rows.len();

@@ -39,6 +39,8 @@ pub(super) struct Skeleton {
     corner_fits: Vec<FitId>,
     /// Those that label the points of the cloud.
     labelling: Vec<FitId>,
+    /// Corners that a curve does not reach although the fit about them says so, once for each such curve.
+    unreached: Vec<Row>,
 }
 
 impl Skeleton {
@@ -138,7 +140,7 @@ impl Skeleton {
         self.atlas.get(self.corner_fits[k])
     }
 
-    /// The points that models call 0-strata.
+    /// The points that models call 0-strata. The link is not theirs where a curve that they count does not reach the point.
     pub(super) fn points(
         &self,
         strata: &Strata,
@@ -149,11 +151,13 @@ impl Skeleton {
             .filter_map(|r| {
                 let landmark = self.corner_rows().iter().position(|&c| c == r.row)?;
                 let count = |d| r.fit.strata.iter().filter(|s| s.dimension == d).count();
+                let unreached = self.unreached.iter().filter(|&&row| row == r.row).count();
                 Some(PointStratum {
                     landmark: Landmark::new(landmark),
-                    curves: count(1),
+                    curves: count(1) - unreached.min(count(1)),
                     cells: count(2),
                     link: (strata.sites()[r.row].on()?.fit)
+                        .filter(|_| unreached == 0)
                         .and_then(|used| models[usize::from(used.model)].link_of(&r.fit)),
                 })
             })

@@ -55,7 +55,8 @@ impl Nodes {
     }
 
     /// 0-strata tell arcs apart, and where a boundary was given the cells at a corner do. Where the bands of two arcs run
-    /// together, or a point of a cell fills a gap of one, the nearest point that is on one arc alone decides.
+    /// together, or a point of a cell fills a gap of one, the nearest point that is on one arc alone decides, if it is near: a point of a
+    /// cell can be on another curve as well, that the corner knows nothing of.
     fn keep_arcs<S: Scalar>(&mut self, skeleton: &Skeleton, ground: &Ground<'_, '_, S>) {
         let on_arc: Vec<(Row, Branch)> = (self.rows.iter().zip(&self.branches))
             .filter_map(|(&row, &found)| Some((row, found?)))
@@ -76,7 +77,10 @@ impl Nodes {
                 }
                 let far = |x: &(Row, Branch)| ground.distance(x.0, row);
                 let own = on_arc.iter().filter(|x| x.1.0 == k);
-                own.min_by(|a, b| far(a).total_cmp(&far(b))).map(|x| x.1)
+                let nearest = own.min_by(|a, b| far(a).total_cmp(&far(b)));
+                nearest
+                    .filter(|x| !corner.is_cell(l) || far(x) < ground.dl)
+                    .map(|x| x.1)
             });
         }
     }

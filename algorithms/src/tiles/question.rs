@@ -1,0 +1,175 @@
+//! What tiles are asked, what they answer, and who asks them.
+
+use super::gathered::{Gathered, lost};
+use super::row::CloudRow;
+use crate::tuning::CellTuning;
+use crosscap_core::{CellNeighborhood, Error};
+use serde::{Deserialize, Serialize};
+
+/// A question that every tile is asked. It holds all that is needed beside the points, so that a tile keeps nothing from
+/// one question to the next: whoever lost an answer asks again, and whoever lost a tile makes it anew.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Question {
+    /// Points in the box at the place of one with a smaller row.
+    Copies,
+    /// Which points in the box are landmarks at this separation, as far as it follows from those that are `taken`. Answered
+    /// by [`Answer::Landmarks`].
+    Landmarks {
+        /// Landmark separation dl, unit of the data.
+        separation: f64,
+        /// Landmarks that are known.
+        taken: Gathered,
+    },
+    /// The neighborhoods of the landmarks in the box. Answered by [`Answer::Cells`].
+    Cells(CellQuestion),
+    /// The nearest point of each of some places, and others that are as near within rounding; for places in the box, of
+    /// all points of the cloud that the tile knows. With `alone` for all places, of the points in the box.
+    Nearest {
+        /// The places, one after the other.
+        places: Vec<f64>,
+        /// Whether points in the box alone are looked at.
+        alone: bool,
+    },
+    /// The points in the box at most `radius` from one of some places.
+    Around {
+        /// The places, one after the other.
+        places: Vec<f64>,
+        /// How far, unit of the data.
+        radius: f64,
+    },
+    /// The points in the box with these rows of the cloud, given in order.
+    Rows(Vec<CloudRow>),
+    /// The points in the box that are far from a mesh, and the nearest others of each.
+    Behind(BehindQuestion),
+}
+
+/// What is asked about points that a mesh leaves behind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BehindQuestion {
+    /// Places of the vertices, one after the other.
+    pub vertices: Vec<f64>,
+    /// The triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Distance from which a point is far, unit of the data.
+    pub far: f64,
+    /// How many of its nearest others are wanted.
+    pub company: usize,
+}
+
+/// What neighborhoods depend on beside the points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CellQuestion {
+    /// All landmarks, in their order.
+    pub landmarks: Vec<CloudRow>,
+    /// Landmark separation dl, unit of the data.
+    pub dl: f64,
+    /// Radius of the charts, unit of the data.
+    pub tri_eps: f64,
+    /// The numbers that decide.
+    pub tuning: CellTuning,
+}
+
+/// What a tile answers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Answer {
+    /// Some points, in no order.
+    Points(Gathered),
+    /// Landmarks that were not known, and what is still open.
+    Landmarks {
+        /// The landmarks.
+        chosen: Gathered,
+        /// Their places in the random order of the cloud.
+        ranks: Vec<u32>,
+        /// How many points in the box are neither landmarks nor close to one, as far as is known.
+        open: usize,
+    },
+    /// Neighborhoods.
+    Cells(Vec<CellNeighborhood>),
+    /// Nearest points of places, in no order, and the numbers of those places in the box whose nearest point may be
+    /// beyond the halo.
+    Nearest {
+        /// The points.
+        points: Gathered,
+        /// Places without an answer.
+        beyond: Vec<u32>,
+    },
+}
+
+/// Whoever has the tiles of a cloud: threads of this process, or other machines.
+pub trait Tiles {
+    /// Number of points of the cloud.
+    fn points(&self) -> usize;
+
+    /// Number of coordinates.
+    fn dimension(&self) -> usize;
+
+    /// How far the points of every tile go beyond its box.
+    fn halo(&self) -> f64;
+
+    /// The answers of all tiles to a question, in any order that is the same at every call.
+    ///
+    /// # Errors
+    /// Those of [`Tile::answer`](super::Tile::answer), and what keeps a tile from being asked.
+    fn ask(&self, question: &Question) -> Result<Vec<Answer>, Error>;
+
+    /// The points that all tiles answer with, in the order of their rows, each once.
+    ///
+    /// # Errors
+    /// Those of [`ask`](Self::ask).
+    fn gather(&self, question: &Question) -> Result<Gathered, Error> {
+        let mut all = Gathered::new(self.dimension());
+        for answer in self.ask(question)? {
+            if let Answer::Points(points) | Answer::Nearest { points, .. } = &answer {
+                all.extend(points);
+            }
+        }
+        Ok(all.sorted())
+    }
+
+    /// The nearest points of all places, among them the first of those that are equally near.
+    ///
+    /// # Errors
+    /// Those of [`ask`](Self::ask).
+    fn nearest(&self, places: &[f64]) -> Result<Gathered, Error> {
+        let width = self.dimension();
+        let mut all = Gathered::new(width);
+        let mut left = Vec::new();
+        let question = Question::Nearest {
+            places: places.to_vec(),
+            alone: false,
+        };
+        for answer in self.ask(&question)? {
+            if let Answer::Nearest { points, beyond } = answer {
+                all.extend(&points);
+                for k in beyond {
+                    left.extend_from_slice(&places[k as usize * width..][..width]);
+                }
+            }
+        }
+        if !left.is_empty() {
+            // Far from all points: every tile says which of its own is nearest.
+            let question = Question::Nearest {
+                places: left,
+                alone: true,
+            };
+            all.extend(&self.gather(&question)?);
+        }
+        Ok(all.sorted())
+    }
+
+    /// The points of some rows, given in order.
+    ///
+    /// # Errors
+    /// Those of [`ask`](Self::ask); [`Error::Shape`] for a row that no tile has.
+    fn rows(&self, rows: Vec<CloudRow>) -> Result<Gathered, Error> {
+        let question = Question::Rows(rows);
+        let found = self.gather(&question)?;
+        match &question {
+            Question::Rows(rows) => match rows.iter().find(|&&row| found.find(row).is_none()) {
+                None => Ok(found),
+                Some(&row) => Err(lost(row)),
+            },
+            _ => Ok(found),
+        }
+    }
+}

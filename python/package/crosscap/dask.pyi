@@ -1,0 +1,28 @@
+from typing import Any, Literal
+
+from . import LocalDimension, SurfaceReconstruction
+
+__all__ = ["local_dimension", "reconstruct"]
+
+def reconstruct(
+    points: Any,
+    eps: float,
+    dl: float,
+    *,
+    surface: bool = False,
+    tri_eps: float | None = None,
+    tiles: int | None = None,
+    random_state: Any = 0,
+    on_refusal: Literal["raise", "warn", "ignore"] = "raise",
+    client: Any = None,
+    verbose: bool = False,
+) -> SurfaceReconstruction: ...
+def local_dimension(
+    points: Any,
+    eps: float,
+    estimator: str = "pca",
+    *,
+    dt: float = 0.05,
+    tiles: int | None = None,
+    client: Any = None,
+) -> LocalDimension: ...

@@ -1,0 +1,109 @@
+//! What to try next.
+
+use super::Progress;
+use crate::auto::attempt::Attempt;
+use crate::auto::density::Density;
+use crate::auto::moves::{Move, opened, other_landmarks};
+use crate::auto::needs::RESOLVING;
+use crate::auto::symptoms::Symptom;
+use crate::pipeline::Parameters;
+
+/// Other landmarks in a row, where little is wrong: of 30 attempts with others again none passed.
+const AGAIN: usize = 1;
+/// Attempts to confirm with landmarks as far apart, where they fail.
+const CONFIRMING: usize = 2;
+/// Separations that differ by less than this share give other landmarks and hardly another mesh.
+const ALIKE: f64 = 0.08;
+
+/// Attempts in a row that come no farther than an earlier one, after which the search ends where much is wrong.
+const IN_VAIN: usize = 3;
+
+impl Progress<'_> {
+    /// Other landmarks for the attempt that came farthest, where it nearly passed; no chance of the landmarks opens a gap that they
+    /// are too far apart for, and then it is the last attempt, which had them nearer.
+    fn nearly(&self) -> Option<Parameters> {
+        let farthest = self.best.as_ref()?.0;
+        let last = self.attempts.len() - 1;
+        let asked = [farthest, last]
+            .into_iter()
+            .find(|&index| self.needed[index].is_none());
+        self.others_than(asked?)
+    }
+
+    /// Other landmarks for an attempt that nearly passed, where they were not tried so often yet.
+    fn others_than(&self, attempt: usize) -> Option<Parameters> {
+        let near = (self.attempts.get(attempt)).filter(|attempt| attempt.end.is_near_miss())?;
+        let of = &near.parameters;
+        let alike = |other: &&Attempt| {
+            let other = &other.parameters;
+            let near = (other.dl / of.dl - 1.0).abs() < ALIKE;
+            near && other.spaces == of.spaces
+                && other.models == of.models
+                && other.surface == of.surface
+        };
+        let times = self.attempts.iter().filter(alike).count();
+        // The first time there is nothing alike but the attempt itself.
+        if times > AGAIN {
+            return None;
+        }
+        let fresh = |next: &Parameters| self.attempts.iter().all(|a| a.parameters != *next);
+        (times..=times + 1).find_map(|time| other_landmarks(of, &self.pinned, time).filter(fresh))
+    }
+
+    /// What to try next and why: other landmarks where little is wrong, and otherwise a change of the attempt that came
+    /// farthest, or of the first, that was not tried yet.
+    pub(super) fn next(&self, density: &Density) -> Option<(Parameters, &'static str)> {
+        let pinned = &self.pinned;
+        if let Some(next) = self.nearly() {
+            return Some((next, "other landmarks, as little is wrong"));
+        }
+        let farthest = self.best.as_ref().map_or(0, |best| best.0);
+        let fresh = |next: &Parameters| self.attempts.iter().all(|a| a.parameters != *next);
+        [farthest, 0].into_iter().find_map(|index| {
+            let from = &self.attempts[index].parameters;
+            if let Some(next) = self.needed[index].and_then(|dl| opened(from, pinned, density, dl))
+                && fresh(&next)
+            {
+                return Some((next, "landmarks near enough to leave the gaps open"));
+            }
+            let moves = self.symptoms[index].map_or(&[][..], Symptom::moves);
+            moves.iter().find_map(|step| {
+                let next = step.apply(from, pinned, density).filter(fresh)?;
+                Some((next, step.reason()))
+            })
+        })
+    }
+
+    /// What may confirm a mesh that passed with these parameters, the so-many-th time from 1: other landmarks, nearer to each
+    /// other where those before were too far apart for what the points leave open, or failed twice.
+    pub(super) fn confirming(
+        &self,
+        passed: &Parameters,
+        time: usize,
+        density: &Density,
+    ) -> Option<(Parameters, &'static str)> {
+        let fresh = |next: &Parameters| self.attempts.iter().all(|a| a.parameters != *next);
+        let needed = self.needed.last().copied().flatten();
+        let finer = match needed.filter(|_| time > 1) {
+            Some(needed) => {
+                let needed = needed.min(RESOLVING * passed.dl);
+                opened(passed, &self.pinned, density, needed)
+            }
+            None if time > CONFIRMING => Move::Smaller.apply(passed, &self.pinned, density),
+            None => None,
+        };
+        let other = || other_landmarks(passed, &self.pinned, time);
+        match finer.filter(fresh) {
+            Some(next) => Some((next, "landmarks nearer to each other, to confirm")),
+            None => Some((other()?, "other landmarks, to confirm the one that passed")),
+        }
+    }
+
+    /// Whether further attempts are in vain: the last ones came no farther than one before them, and much is wrong
+    /// with that.
+    pub(super) fn is_hopeless(&self) -> bool {
+        let farthest = self.best.as_ref().map_or(0, |best| best.0);
+        let since = self.attempts.len() - 1 - farthest;
+        since >= IN_VAIN && !self.attempts[farthest].end.is_near_miss()
+    }
+}
