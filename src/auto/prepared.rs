@@ -186,7 +186,7 @@ impl Better {
         }
         if self.noise > 0.0 {
             // Where it cannot be told, the separation is the same everywhere, which is stricter where points are sparse.
-            let scale = parameters.spaces.metric.separation_scale(&self.unmoved);
+            let scale = parameters.spaces.metric.separation_scale(&self.cloud);
             let scale = scale.ok().flatten();
             let options = CertificateOptions {
                 points: Some(&self.unmoved),

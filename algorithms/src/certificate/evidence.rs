@@ -20,10 +20,7 @@ pub fn evidence_rows(points: usize, limits: &Limits) -> Vec<usize> {
 /// About 13 places a triangle.
 pub fn evidence_places(mesh: &Mesh, separation: f64, options: &CertificateOptions<'_>) -> Vec<f64> {
     let incidence = Incidence::new(&mesh.complex);
-    let bare: Vec<[u32; 2]> = (0..incidence.edges.len())
-        .filter(|&e| incidence.at_edge(e).is_empty())
-        .map(|e| incidence.edges[e])
-        .collect();
+    let bare = incidence.bare_edges();
     let all = RefCell::new(cover::places(mesh, &bare, separation));
     let shortest = options.limits.shortest_boundary;
     edges::check(mesh, &incidence, options.closed, shortest, &|part| {

@@ -84,6 +84,14 @@ impl Incidence {
         &self.triangles[self.starts[edge] as usize..self.starts[edge + 1] as usize]
     }
 
+    /// The edges without triangles, which are on curves alone.
+    pub fn bare_edges(&self) -> Vec<[u32; 2]> {
+        (0..self.edges.len())
+            .filter(|&e| self.at_edge(e).is_empty())
+            .map(|e| self.edges[e])
+            .collect()
+    }
+
     /// The number of cells that an edge is marked with, `None` for an ordinary edge and for none.
     pub fn cells_at(&self, [a, b]: [u32; 2]) -> Option<u8> {
         let edge = self.edges.binary_search(&[a.min(b), a.max(b)]).ok()?;

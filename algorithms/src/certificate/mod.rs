@@ -116,10 +116,7 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
         return certificate;
     }
     let incidence = incidence::Incidence::new(&mesh.complex);
-    let bare: Vec<[u32; 2]> = (0..incidence.edges.len())
-        .filter(|&e| incidence.at_edge(e).is_empty())
-        .map(|e| incidence.edges[e])
-        .collect();
+    let bare = incidence.bare_edges();
     let frame = frame::Frame::new(&mesh.vertices, options.points);
     let quality = quality::check(mesh, &incidence, &options.limits);
     certificate.links = Some(links::check(

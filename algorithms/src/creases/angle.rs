@@ -62,7 +62,7 @@ impl Meeting {
         if moved.sum::<f64>() > ground.edge.powi(2) {
             place = start;
         }
-        let Corner { angle, ways } = corner(&sheets, &place, &mut walk.offset)?;
+        let Wedge { angle, ways } = wedge(&sheets, &place, &mut walk.offset)?;
         let bend = (sheets.iter().zip(ways.iter().flatten()))
             .map(|(sheet, way)| turn(sheet, &place, way, ground.edge, &mut walk.offset))
             .sum();
@@ -125,7 +125,7 @@ fn turn(sheet: &SheetFit, place: &[f64], way: &[f64], length: f64, offset: &mut 
 }
 
 /// Two sheets where they meet.
-struct Corner {
+struct Wedge {
     /// The angle between them, degrees.
     angle: f64,
     /// Unit directions from the place into each; none where they continue each other.
@@ -134,7 +134,7 @@ struct Corner {
 
 /// The angle between two sheets at a place. The half planes that touch them are at right angles to the direction that
 /// the planes have in common, or nearly, and go to where the points of each sheet are.
-fn corner(sheets: &[SheetFit; 2], place: &[f64], offset: &mut Vec<f64>) -> Option<Corner> {
+fn wedge(sheets: &[SheetFit; 2], place: &[f64], offset: &mut Vec<f64>) -> Option<Wedge> {
     let planes = sheets.each_ref().map(|s| s.touching(place, offset));
     let between = Matrix2::from_fn(|i, j| dot(&planes[0][i], &planes[1][j]));
     let parts = between.svd(true, true);
@@ -150,7 +150,7 @@ fn corner(sheets: &[SheetFit; 2], place: &[f64], offset: &mut Vec<f64>) -> Optio
     if acute < FLAT {
         let opposite = dot(&away[0], &away[1]) < 0.0;
         let angle = if opposite { 180.0 - acute } else { acute };
-        return Some(Corner { angle, ways: None });
+        return Some(Wedge { angle, ways: None });
     }
     let turned = |plane: &[Vec<f64>; 2], by: [f64; 2], away: &[f64]| -> Vec<f64> {
         let out: Vec<f64> = (plane[0].iter().zip(&plane[1]))
@@ -165,7 +165,7 @@ fn corner(sheets: &[SheetFit; 2], place: &[f64], offset: &mut Vec<f64>) -> Optio
         [second[(least, 0)], second[(least, 1)]],
         &away[1],
     );
-    Some(Corner {
+    Some(Wedge {
         angle: dot(&one, &other).clamp(-1.0, 1.0).acos().to_degrees(),
         ways: Some([one, other]),
     })

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// When a seam of two faces is a crease. *Measured* together, on the samples that the guide names (`models/crease.md`).
+/// When a seam of two faces is a crease. *Measured* together, on the samples that the guide names (`docs/src/creases.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct CreaseLimits {
@@ -28,7 +28,7 @@ pub struct CreaseLimits {
     /// At a crease the points next to it are on the sheets of its sides: the one in the middle is off the nearer of them at most this many
     /// times what points elsewhere are off theirs, and `inside` median edges more. At a bend they are inside.
     pub rounded: f64,
-    /// See [`rounded`](Self::rounded).
+    /// What they may be off anyway, in median edges of the mesh: see [`rounded`](Self::rounded).
     pub inside: f64,
     /// A seam between corners that is no longer than this, in median edges of the mesh, is part of a corner.
     pub contact: f64,

@@ -63,34 +63,35 @@ pub fn tangent_planes<S: Scalar>(
             expected: format!("at least {LEAST}"),
         });
     }
-    let own = locality::map(
-        execute,
-        Some(cloud),
-        cloud.len(),
-        Scratch::default,
-        |scratch, i| {
-            scratch.look(cloud, oracle, i, count);
-            plane(scratch).ok_or(Error::SparseNeighborhood {
-                point: i,
-                found: scratch.rows.len(),
-                needed: LEAST,
-                parameter: "the number of points of a tangent plane",
-            })
-        },
-    );
+    let own = at_each(cloud, oracle, count, execute, |scratch, i| {
+        plane(scratch).ok_or(Error::SparseNeighborhood {
+            point: i,
+            found: scratch.rows.len(),
+            needed: LEAST,
+            parameter: "the number of points of a tangent plane",
+        })
+    });
     let own = own.into_iter().collect::<Result<Vec<Basis>, Error>>()?;
-    let planes = locality::map(
-        execute,
-        Some(cloud),
-        cloud.len(),
-        Scratch::default,
-        |scratch, i| {
-            scratch.look(cloud, oracle, i, count);
-            among_neighbors(cloud, i, scratch, &own)
-        },
-    );
+    let planes = at_each(cloud, oracle, count, execute, |scratch, i| {
+        among_neighbors(cloud, i, scratch, &own)
+    });
     let numbers = planes.into_iter().flatten().flatten();
     Ok(numbers.map(S::of).collect())
+}
+
+/// What `work` makes of every point, by row, with its `count` nearest at hand.
+fn at_each<S: Scalar, T: Send + Sync>(
+    cloud: &PointCloud<S>,
+    oracle: &dyn NeighborhoodOracle<Scalar = S>,
+    count: usize,
+    execute: &dyn Execute,
+    work: impl Fn(&mut Scratch<S>, usize) -> T + Sync,
+) -> Vec<T> {
+    let look = |scratch: &mut Scratch<S>, i: usize| {
+        scratch.look(cloud, oracle, i, count);
+        work(scratch, i)
+    };
+    locality::map(execute, Some(cloud), cloud.len(), Scratch::default, look)
 }
 
 /// Fewest points that a plane is sought among.

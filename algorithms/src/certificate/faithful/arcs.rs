@@ -201,10 +201,7 @@ impl Arc {
 
 /// The edges without triangles as arcs, each with the points that stand on it.
 fn arcs(mesh: &Mesh, incidence: &Incidence, feet: &Footprints) -> Vec<Arc> {
-    let bare: Vec<[u32; 2]> = (0..incidence.edges.len())
-        .filter(|&e| incidence.at_edge(e).is_empty())
-        .map(|e| incidence.edges[e])
-        .collect();
+    let bare = incidence.bare_edges();
     let mut at_vertex: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for (k, ends) in bare.iter().enumerate() {
         for v in ends {
