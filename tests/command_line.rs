@@ -197,44 +197,44 @@ fn a_cloud_that_does_not_fit_is_worked_on_in_tiles() {
     // Spheres in a row, so that halos are small beside the cloud.
     let sphere = SampleSurface::find("sphere").unwrap();
     let sphere = sphere.sample(&Sampling::new(25_000, 4)).unwrap().points;
-    let row = (0..20).flat_map(|k| {
+    let row = (0..12).flat_map(|k| {
         let places = sphere.iter();
         places.flat_map(move |p| [p[0] + 4.0 * f64::from(k), p[1], p[2]])
     });
-    let row = PointCloud::new(3, row.collect()).unwrap();
+    // A point that is there twice counts once, whatever becomes of the rows behind it.
+    let twice = sphere.point(9).iter().copied();
+    let row = PointCloud::new(3, twice.chain(row).collect()).unwrap();
     write_points(room.path("p.npy"), &row).unwrap();
     let run = "reconstruct p.npy -o m.npz --eps 0.6 --dl 0.3 --surface --threads 2";
     room.run(run).expect(0);
     let mesh = std::fs::read(room.path("m.npz")).unwrap();
-    let limit = 268;
+    let limit = 258;
     let tiled = room
         .run(&format!("{run} --memory-limit {limit}MiB --report r.json"))
         .expect(0)
-        .complains("in memory a run with these 500000 points of R^3 takes up to")
+        .complains("in memory a run with these 300001 points of R^3 takes up to")
         .complains("tiles on")
-        .says("(verified)");
+        .says("(verified)")
+        .says("1 duplicate point in the input");
     assert!(held(&tiled) <= limit, "{}", tiled.err);
     assert!(std::fs::read(room.path("m.npz")).unwrap() == mesh);
     assert_eq!(room.files(), ["m.npz", "p.npy", "r.json"]);
     // What tiles cannot do is refused before the work, with what would do.
-    room.run("reconstruct p.npy -o m.npz --memory-limit 268MiB")
+    room.run("reconstruct p.npy -o m.npz --memory-limit 258MiB")
         .expect(2)
         .complains("looks at all points together")
         .complains("--surface`")
         .complains("else --memory-limit");
-    room.run("reconstruct p.npy -o m.npz --eps 0.6 --dl 0.3 --memory-limit 268MiB")
+    room.run("reconstruct p.npy -o m.npz --eps 0.6 --dl 0.3 --memory-limit 258MiB")
         .expect(2)
         .complains("curves are not looked for in tiles")
-        .complains("--memory-limit 268MiB --surface`");
-    room.run(&format!("{run} --metric geodesic --memory-limit 268MiB"))
+        .complains("--memory-limit 258MiB --surface`");
+    room.run(&format!("{run} --metric geodesic --memory-limit 258MiB"))
         .expect(2)
         .complains("parameter metric");
     room.run(&format!("{run} --memory-limit 20MiB"))
         .expect(2)
         .complains("in tiles, too");
-    room.run(&format!("{run} --memory-limit 1GB --cut-out c.npy"))
-        .expect(0)
-        .complains("within the limit");
 }
 
 #[test]

@@ -17,6 +17,8 @@ use std::sync::{Mutex, PoisonError};
 const AT_ONCE: usize = 4 << 20;
 /// Fewest bytes that wait for one tile, so that the file is written in pieces and not number by number.
 const LEAST_WAITING: usize = 4 << 10;
+/// What the scratch file is called in messages.
+const SCRATCH: &str = "(scratch file)";
 /// Bytes of a coordinate.
 const NUMBER: usize = size_of::<f64>();
 /// Bytes of row and rank of a point.
@@ -41,6 +43,8 @@ pub struct TilesOnDisk<'a> {
     dimension: usize,
     halo: f64,
     execute: &'a dyn Execute,
+    /// Rows of the file that were left out, in order.
+    copies: Vec<u32>,
 }
 
 /// A part of the file.
@@ -52,11 +56,11 @@ struct Extent {
 
 impl<'a> TilesOnDisk<'a> {
     /// Divides the points of a file among the tiles of a tiling, with a halo; `seed` is that of the random order in which landmarks
-    /// are chosen. The scratch file is made in `folder`, and is as large as the coordinates in 64 bits and eight bytes a
+    /// are chosen. Of points at one place the first is taken. The scratch file is made in `folder`, and is as large as the coordinates in 64 bits and eight bytes a
     /// point, times the tiles that a point lies in.
     ///
     /// # Errors
-    /// Those of [`PointRows::read`]; [`FileError::Write`] where the scratch file cannot be made or written.
+    /// Those of [`PointRows::read`]; [`FileError::Write`] and [`FileError::Read`] where the scratch file cannot be made, written or read.
     pub fn new(
         cloud: &PointRows,
         tiling: Tiling,
@@ -65,28 +69,8 @@ impl<'a> TilesOnDisk<'a> {
         folder: &Path,
         execute: &'a dyn Execute,
     ) -> Result<Self, FileError> {
-        let unwritten = |source| FileError::Write {
-            path: folder.join("(tiles)"),
-            source,
-        };
-        let mut divided = Divided::new(&tiling, tempfile::tempfile_in(folder).map_err(unwritten)?);
-        let ranks = random_ranks(cloud.len(), seed);
-        let rows_at_once = (AT_ONCE / (NUMBER * cloud.dimension().max(1))).max(1);
-        for start in (0..cloud.len()).step_by(rows_at_once) {
-            let rows = start..cloud.len().min(start + rows_at_once);
-            let points = cloud.read(rows.clone())?;
-            let mut written = Ok(());
-            for (row, place) in rows.zip(points.iter()) {
-                tiling.near(place, halo, |tile| {
-                    if written.is_ok() {
-                        written = divided.push(tile, place, row as u32, ranks[row]);
-                    }
-                });
-            }
-            written.map_err(unwritten)?;
-        }
-        let (file, extents) = divided.end().map_err(unwritten)?;
-        Ok(Self {
+        let (file, extents) = divided(cloud, &tiling, halo, seed, folder, &[])?;
+        let mut tiles = Self {
             scratch: Mutex::new(file),
             tiling,
             extents,
@@ -94,7 +78,21 @@ impl<'a> TilesOnDisk<'a> {
             dimension: cloud.dimension(),
             halo,
             execute,
-        })
+            copies: Vec::new(),
+        };
+        let copies = tiles.gather(&Question::Copies);
+        let copies = copies.map_err(|error| FileError::Read {
+            path: folder.join(SCRATCH),
+            source: std::io::Error::other(error),
+        })?;
+        if !copies.is_empty() {
+            // The random order is that of the points which stay.
+            tiles.copies = copies.rows().iter().map(|row| row.index() as u32).collect();
+            tiles.points -= tiles.copies.len();
+            let (file, extents) = divided(cloud, &tiles.tiling, halo, seed, folder, &tiles.copies)?;
+            (tiles.scratch, tiles.extents) = (Mutex::new(file), extents);
+        }
+        Ok(tiles)
     }
 
     /// Bytes of the scratch file.
@@ -162,12 +160,74 @@ impl Tiles for TilesOnDisk<'_> {
         self.halo
     }
 
+    fn input_row(&self, row: CloudRow) -> usize {
+        // Before the copy at `k` in the list so many points stay as its row says, less k.
+        let (mut low, mut high) = (0, self.copies.len());
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            if self.copies[middle] as usize - middle <= row.index() {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        row.index() + low
+    }
+
+    fn left_out(&self) -> usize {
+        self.copies.len()
+    }
+
     fn ask(&self, question: &Question) -> Result<Vec<Answer>, Error> {
         let answers = few(self.execute, self.extents.len(), |k| {
             self.tile(TileId::new(k))?.answer(question)
         });
-        answers.into_iter().collect()
+        let answers: Result<Vec<Answer>, Error> = answers.into_iter().collect();
+        answers.map_err(|mut error| {
+            if let Error::SparseNeighborhood { point, .. } = &mut error {
+                *point = self.input_row(CloudRow::new(*point));
+            }
+            error
+        })
     }
+}
+
+/// The points of a file but `copies`, rows in order, divided among tiles: the scratch file, and where the points of every tile are.
+fn divided(
+    cloud: &PointRows,
+    tiling: &Tiling,
+    halo: f64,
+    seed: u64,
+    folder: &Path,
+    copies: &[u32],
+) -> Result<(File, Table<TileId, Vec<Extent>>), FileError> {
+    let unwritten = |source| FileError::Write {
+        path: folder.join(SCRATCH),
+        source,
+    };
+    let mut divided = Divided::new(tiling, tempfile::tempfile_in(folder).map_err(unwritten)?);
+    let ranks = random_ranks(cloud.len() - copies.len(), seed);
+    let rows_at_once = (AT_ONCE / (NUMBER * cloud.dimension().max(1))).max(1);
+    let mut copies = copies.iter().copied().peekable();
+    let mut row: u32 = 0;
+    for start in (0..cloud.len()).step_by(rows_at_once) {
+        let rows = start..cloud.len().min(start + rows_at_once);
+        let points = cloud.read(rows.clone())?;
+        let mut written = Ok(());
+        for (input, place) in rows.zip(points.iter()) {
+            if copies.next_if_eq(&(input as u32)).is_some() {
+                continue;
+            }
+            tiling.near(place, halo, |tile| {
+                if written.is_ok() {
+                    written = divided.push(tile, place, row, ranks[row as usize]);
+                }
+            });
+            row += 1;
+        }
+        written.map_err(unwritten)?;
+    }
+    divided.end().map_err(unwritten)
 }
 
 /// Points on their way to the file.
@@ -258,7 +318,42 @@ mod tests {
         let least = 20_000 / 5 * record(3) as u64;
         assert!(disk.bytes() > 5 * least && disk.bytes() < 15 * least);
         assert!(disk.largest() > 20_000 / 5);
+        assert_eq!((disk.left_out(), disk.input_row(CloudRow::new(7))), (0, 7));
         // The scratch file has no name.
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+    #[test]
+    fn copies_are_left_out_and_rows_are_those_of_the_file() {
+        let mut random = Random::new(5);
+        let distinct: Vec<[f64; 2]> = (0..300)
+            .map(|_| [random.uniform(), random.uniform()])
+            .collect();
+        // Copies stand anywhere, first, behind each other, last.
+        let mut rows = distinct.clone();
+        for (at, of) in [(0, 7), (1, 7), (50, 9), (120, 9), (304, 0)] {
+            rows.insert(at, distinct[of]);
+        }
+        let input = PointCloud::new(2, rows.concat()).unwrap();
+        let first = |row: usize| (0..row).all(|other| rows[other] != rows[row]);
+        let kept: Vec<usize> = (0..rows.len()).filter(|&row| first(row)).collect();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("points.npy");
+        write_points(&path, &input).unwrap();
+        let file = PointRows::open(&path).unwrap();
+        let tiling = Tiling::new(&input, 3);
+        let disk = TilesOnDisk::new(&file, tiling.clone(), 0.2, 1, folder.path(), &Serial).unwrap();
+        assert_eq!((disk.points(), disk.left_out()), (300, 5));
+        let named: Vec<usize> = (0..300)
+            .map(|row| disk.input_row(CloudRow::new(row)))
+            .collect();
+        assert_eq!(named, kept);
+        let kept = input.select(&kept);
+        let memory = TilesInMemory::new(&kept, &tiling, 0.2, 1, &Serial).unwrap();
+        let taken = crosscap_algorithms::tiles::Gathered::new(2);
+        let question = Question::Landmarks {
+            separation: 0.1,
+            taken,
+        };
+        assert_eq!(disk.ask(&question).unwrap(), memory.ask(&question).unwrap());
     }
 }

@@ -161,9 +161,9 @@ impl Parts {
     ) -> Report {
         Report {
             version: env!("CARGO_PKG_VERSION"),
-            points: tiles.points(),
+            points: tiles.points() + tiles.left_out(),
             dimension: tiles.dimension(),
-            duplicates: 0,
+            duplicates: tiles.left_out(),
             plugins: PluginNames {
                 metric: "euclidean".into(),
                 oracle: "tiles".into(),

@@ -65,7 +65,7 @@ impl Located for Tiled<'_> {
     }
 
     fn input(&self, row: Row) -> InputRow {
-        InputRow::new(row.index())
+        InputRow::new(self.tiles.input_row(CloudRow::new(row.index())))
     }
 }
 
@@ -211,7 +211,7 @@ impl Maker for Tiled<'_> {
         let violations = cover.flat_map(|report| &mut report.violations);
         for place in violations.flat_map(|violation| &mut violation.places) {
             if let Place::Point(row) = place {
-                *row = all.rows()[*row].index();
+                *row = self.tiles.input_row(all.rows()[*row]);
             }
         }
         Ok(certificate)
