@@ -62,6 +62,11 @@ impl Jet {
         (self.chain(sine, cosine), self.chain(cosine, -sine))
     }
 
+    /// Hyperbolic cosine.
+    pub fn cosh(self) -> Self {
+        self.chain(libm::cosh(self.value), libm::sinh(self.value))
+    }
+
     /// Square root; the derivative at 0 is infinite.
     pub fn sqrt(self) -> Self {
         let root = self.value.sqrt();
@@ -164,7 +169,7 @@ mod tests {
     fn derivatives_agree_with_differences() {
         let f = |u: Jet, v: Jet| {
             let (s, c) = (u * v).sin_cos();
-            (s * s + c * 2.0 + 3.0).sqrt() / (u * u + 1.0) - v * 0.5
+            (s * s + c * 2.0 + 3.0).sqrt() / (u * u + 1.0) - (v * u).cosh() * 0.5
         };
         let (u, v, h) = (0.7, 1.3, 1e-6);
         let at = |u, v| f(Jet::constant(u), Jet::constant(v)).value;
