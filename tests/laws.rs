@@ -188,7 +188,7 @@ law_tests! {
         ),
         settings: settings();
     mod cone_point =
-        model(&ConePoint::new(0.1, 0.05).unwrap(), &Instances::new(&instances::cone_point)),
+        model(&ConePoint::new(0.1, 0.05).unwrap(), &of(150..=300, &instances::cone_point)),
         settings: settings();
     // A fifth of them are on the line, and two thirds of those in the neighborhood.
     mod curve_through_sheet =
