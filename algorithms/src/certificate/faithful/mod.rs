@@ -17,6 +17,7 @@ pub(super) mod ground;
 mod nearby;
 pub(super) mod opening;
 mod overlay;
+mod parts;
 mod patch;
 mod rim;
 mod search;
@@ -103,6 +104,7 @@ pub(super) fn check(
     if let Some(points) = options.points {
         let found = sheets::look(search, points, significance, options.limits.vertex_offset);
         sheets_told(search.mesh, found, &mut report);
+        parts_told(search.mesh, &parts::touching(search, points), &mut report);
     }
     report
 }
@@ -206,6 +208,21 @@ fn sheets_told(mesh: &Mesh, found: sheets::Found, report: &mut FaithfulReport) {
     }
     report.merged = found.merged.into_iter().next();
     report.offset = found.off.into_iter().next();
+}
+
+/// Places where parts of the mesh touch, as a violation.
+fn parts_told(mesh: &Mesh, touches: &[parts::Touch], report: &mut FaithfulReport) {
+    let Some(nearest) = touches.first() else {
+        return;
+    };
+    let places = touches.iter().map(|t| Place::Vertex(t.vertex)).collect();
+    let detail = format!("{:.2} spacings apart", nearest.apart);
+    let violation = Violation::at(ViolationKind::TouchingParts, places, |place| {
+        super::coordinates(mesh, place)
+    });
+    report
+        .violations
+        .extend(violation.map(|v| v.detailed(detail)));
 }
 
 fn spacings(ground: &Ground) -> [f64; 3] {

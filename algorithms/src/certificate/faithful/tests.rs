@@ -144,6 +144,22 @@ fn a_cut() {
     gap_and_twin(3, |x, _| x.abs() < 1.2 * SPACING);
 }
 
+/// Two halves of a plate whose points are no farther from each other than others are no two parts: where the mesh says so, the
+/// points do not.
+#[test]
+fn parts_that_touch() {
+    let half = 1.0 / SQUARES as f64;
+    let cut = plate(|x, _| x.abs() < 2.0 * half);
+    let touching = |gap: f64| {
+        let points = sample(5, POINTS, |x, _| f64::from(x.abs() > gap / 2.0));
+        let found = judged(&cut, &points);
+        let kinds: Vec<ViolationKind> = found.violations().map(|v| v.kind).collect();
+        kinds.contains(&ViolationKind::TouchingParts)
+    };
+    assert!(touching(0.0) && touching(0.7 * SPACING));
+    assert!(!touching(2.0 * SPACING) && !touching(3.0 * SPACING));
+}
+
 /// A bent slit is found as well: a chain need not be straight.
 #[test]
 fn a_bent_slit() {
