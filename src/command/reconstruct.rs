@@ -314,7 +314,9 @@ impl Reconstruct {
             }
             write_bytes_whole(path, pretty(&report).as_bytes())?;
         }
-        write_reconstruction(&self.output, &outcome.report.parameters, outcome, verified)?;
+        let prepared = !search["preparation"].is_null();
+        let parameters = &outcome.report.parameters;
+        write_reconstruction(&self.output, parameters, outcome, verified, prepared)?;
         let mut lines = vec![
             format!("{}: {} ({verdict})", self.output.display(), findings.size()),
             format!("Betti numbers {}", findings.topology()),
