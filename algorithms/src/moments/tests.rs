@@ -72,10 +72,7 @@ fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
         // so a ball of one point keeps the rounding of squares of that size.
         let rounding = 1e-28 * largest * largest + f64::EPSILON * eps * eps;
         for (a, b) in balls[i].covariance.iter().zip(&expected.covariance) {
-            assert!(
-                (a - b).abs() <= 1e-10 * trace + rounding,
-                "{at}: {a} {b}"
-            );
+            assert!((a - b).abs() <= 1e-10 * trace + rounding, "{at}: {a} {b}");
         }
         for (a, b) in balls[i].mean.iter().zip(&expected.mean) {
             assert!((a - b).abs() <= 1e-13 * largest.max(eps), "{at}: {a} {b}");
