@@ -91,12 +91,14 @@ impl Measured {
             true => WorkedOn::of(points, &PreparationTuning::MEASURED, &threads)?,
             false => None,
         };
+        // Of a dozen points nothing is left out, as in a run.
+        let may_leave_out = looked_at.is_some();
         let mut worked_on = looked_at.unwrap_or_else(|| WorkedOn::as_given(points));
         let mut rounds = 0;
         loop {
             let (certificate, creases) =
                 worked_on.certify(mesh, measuring.metric, options, &threads)?;
-            let alone = match measuring.prepare && rounds < ROUNDS {
+            let alone = match may_leave_out && rounds < ROUNDS {
                 true => alone::rows(
                     &certificate,
                     mesh,
