@@ -1402,6 +1402,23 @@ fn a_refusal_advises_what_was_tried() {
     .expect(0);
 }
 
+/// Lengths in the spacing of the points are for one closed surface, and it is not for the user to say that again.
+#[test]
+fn a_metric_alone_chooses_what_goes_with_it() {
+    let room = Room::new();
+    sphere_points(&room);
+    let ran = room
+        .run("reconstruct points.npy -o mesh.npz --metric conformal")
+        .expect(0)
+        .says("half of the points have 60 others nearer than that")
+        .says("Betti numbers 1, 0, 1 over Q");
+    assert!(ran.out.contains("--surface"), "{}", ran.out);
+    // What is advised after a refusal is tried with the same metric.
+    room.run("reconstruct points.npy -o no.npz --eps 1.9 --dl 1.6 --metric conformal --surface")
+        .expect(1)
+        .complains("it is verified: Betti numbers 1, 0, 1");
+}
+
 #[test]
 fn a_failure_leaves_the_old_file_alone() {
     let room = Room::new();

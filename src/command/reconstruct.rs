@@ -216,10 +216,13 @@ impl Reconstruct {
             .tries(TRIES_FOR_ADVICE)
             .search(input.borrowed(), &mut |parameters| {
                 observed(parameters, estimator)
-            })?;
-        if !search.is_verified() {
-            return Ok(None);
-        }
+            });
+        let search = match search {
+            Ok(search) if search.is_verified() => search,
+            Err(Error::Interrupted) => return Err(Error::Interrupted.into()),
+            // What is pinned may leave nothing to choose; that is no fault of the refused run.
+            Ok(_) | Err(_) => return Ok(None),
+        };
         let attempt = search.attempts.get(search.chosen);
         let found = attempt.and_then(|a| Some((a.parameters.clone(), a.end.topology()?.clone())));
         let prepared = search.preparation.is_some();
