@@ -1027,6 +1027,57 @@ fn a_check_measures_in_the_lengths_that_a_mesh_was_made_with() {
         .says("input points far from the mesh");
 }
 
+/// A sphere of radius 1 with noise of half a spacing, and outliers, one in a hundred.
+fn noisy_sphere() -> PointCloud<f64> {
+    let random = &mut Random::new(8);
+    let mut rows = Vec::new();
+    for place in ball(2000).iter() {
+        let norm = place.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let far = (1.0 + 0.04 * random.normal()) / norm;
+        rows.extend(place.iter().map(|x| far * x));
+    }
+    rows.extend((0..60).map(|_| random.between(-2.0, 2.0)));
+    PointCloud::new(3, rows).unwrap()
+}
+
+/// What a run found out about noise and outliers a check finds out again: the mesh is verified, and a wrong one is not.
+#[test]
+fn a_mesh_of_noisy_points_is_verified_again_and_a_wrong_one_refused() {
+    let room = Room::new();
+    let points = noisy_sphere();
+    write_points(room.path("p.npy"), &points).unwrap();
+    room.run("reconstruct p.npy -o m.npz")
+        .expect(0)
+        .says("points moved onto fits")
+        .says("outliers");
+    room.run("check m.npz --points p.npy")
+        .expect(0)
+        .says("points moved onto fits")
+        .says("left out");
+    // A file that does not tell how it was made is judged as that of a run without parameters.
+    room.run("convert m.npz m.ply").expect(0);
+    room.run("check m.ply --points p.npy").expect(0);
+    room.run("check m.npz --points p.npy --prepare no")
+        .expect(1)
+        .says("input points far from the mesh");
+
+    // A cap is missing from the points: 11 spacings across.
+    let open: Vec<usize> = (0..points.len())
+        .filter(|&row| points.point(row)[2] < 0.9 || row >= 2000)
+        .collect();
+    write_points(room.path("open.npy"), &points.select(&open)).unwrap();
+    room.run("check m.npz --points open.npy")
+        .expect(1)
+        .says("points moved onto fits")
+        .says("gaps of the points that the mesh covers");
+    // The mesh is four times as far off as the points scatter, and more.
+    let mut file = read_mesh(room.path("m.npz")).unwrap();
+    let larger = file.mesh.vertices.coordinates().iter().map(|x| 1.5 * x);
+    file.mesh.vertices = PointCloud::new(3, larger.collect()).unwrap();
+    write_mesh(room.path("large.npz"), &file.mesh, &file.extras, None).unwrap();
+    room.run("check large.npz --points p.npy").expect(1);
+}
+
 #[test]
 fn crossings_are_taken_apart() {
     let room = Room::new();
@@ -1423,6 +1474,23 @@ fn a_refusal_advises_what_was_tried() {
         advised["eps"], advised["dl"]
     ))
     .expect(0);
+}
+
+/// Lengths in the spacing of the points are for one closed surface, and it is not for the user to say that again.
+#[test]
+fn a_metric_alone_chooses_what_goes_with_it() {
+    let room = Room::new();
+    sphere_points(&room);
+    let ran = room
+        .run("reconstruct points.npy -o mesh.npz --metric conformal")
+        .expect(0)
+        .says("half of the points have 60 others nearer than that")
+        .says("Betti numbers 1, 0, 1 over Q");
+    assert!(ran.out.contains("--surface"), "{}", ran.out);
+    // What is advised after a refusal is tried with the same metric.
+    room.run("reconstruct points.npy -o no.npz --eps 1.9 --dl 1.6 --metric conformal --surface")
+        .expect(1)
+        .complains("it is verified: Betti numbers 1, 0, 1");
 }
 
 #[test]

@@ -106,6 +106,7 @@ impl Demo {
             parameters,
             outcome,
             outcome.is_verified(),
+            false,
         )?;
         let input = json!({ "surface": surface, "scalar": cloud.scalar_name() });
         let report = pretty(&report(outcome, input));

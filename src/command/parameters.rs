@@ -221,7 +221,8 @@ fn models(text: &str) -> Result<Models, String> {
     Ok(Models(names))
 }
 
-fn yes_or_no(text: &str) -> Result<bool, String> {
+/// The value of an option that is a choice of two.
+pub fn yes_or_no(text: &str) -> Result<bool, String> {
     match text {
         "yes" => Ok(true),
         "no" => Ok(false),

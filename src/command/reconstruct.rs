@@ -260,10 +260,13 @@ impl Reconstruct {
         let estimator = self.parameters.estimator;
         let search = Auto::new(free.clone())
             .tries(TRIES_FOR_ADVICE)
-            .search(whole, &mut |parameters| observed(parameters, estimator))?;
-        if !search.is_verified() {
-            return Ok(None);
-        }
+            .search(whole, &mut |parameters| observed(parameters, estimator));
+        let search = match search {
+            Ok(search) if search.is_verified() => search,
+            Err(Error::Interrupted) => return Err(Error::Interrupted.into()),
+            // What is pinned may leave nothing to choose; that is no fault of the refused run.
+            Ok(_) | Err(_) => return Ok(None),
+        };
         let attempt = search.attempts.get(search.chosen);
         let found = attempt.and_then(|a| Some((a.parameters.clone(), a.end.topology()?.clone())));
         let prepared = search.preparation.is_some();
@@ -358,7 +361,9 @@ impl Reconstruct {
             }
             write_bytes_whole(path, pretty(&report).as_bytes())?;
         }
-        write_reconstruction(&self.output, &outcome.report.parameters, outcome, verified)?;
+        let prepared = !search["preparation"].is_null();
+        let parameters = &outcome.report.parameters;
+        write_reconstruction(&self.output, parameters, outcome, verified, prepared)?;
         let mut lines = vec![
             format!("{}: {} ({verdict})", self.output.display(), findings.size()),
             format!("Betti numbers {}", findings.topology()),

@@ -4,6 +4,7 @@ use super::fault::Fault;
 use super::kind::FaultKind;
 use crate::auto::{CLOSEST, ROOMY, Topology};
 use crate::pipeline::{Outcome, Parameters};
+use crate::spaces::MetricName;
 use crosscap_algorithms::singularity::ModelName;
 use crosscap_core::Error;
 use serde::Serialize;
@@ -74,7 +75,10 @@ impl Advice {
         // What is so nearly everywhere is no place where sheets meet.
         let local = points.is_none_or(|points| 2 * first.count < points);
         let mut runs = tried.iter().copied().chain(parameters).peekable();
-        let asked_all = runs.peek().is_none() || runs.any(|run| run.models == ModelName::AUTO);
+        // Nor can they be asked where lengths are in the spacing of the points.
+        let closed = |run: &Parameters| run.spaces.uses(MetricName::Conformal);
+        let asked_all =
+            runs.peek().is_none() || runs.any(|run| run.models == ModelName::AUTO || closed(run));
         if meets && local && !asked_all {
             return Self::AllModels;
         }
