@@ -236,7 +236,7 @@ impl Limited {
             self.rows.path().display(),
             shown(least),
             shown(self.limit),
-            enough(least),
+            enough(least.min(self.in_memory)),
             self.needs.landmarks()
         )))
     }

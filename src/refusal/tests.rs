@@ -1,6 +1,6 @@
 //! Kinds of refusals, each provoked, and its advice followed to a verified mesh.
 
-use super::{Advice, FaultKind, Refusal};
+use super::{Advice, FaultKind, Refusal, Spot};
 use crate::auto::{Auto, Pinned};
 use crate::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap_algorithms::singularity::ModelName;
@@ -157,4 +157,21 @@ fn a_crossing_that_no_asked_model_claims_is_claimed_by_all_together() {
         ..pinned
     };
     assert_eq!(verified(&cloud, all), [1, 0, 0]);
+}
+
+#[test]
+fn a_place_is_told_as_far_as_it_is_known() {
+    let spot = |row, coordinates: &[f64]| {
+        let coordinates = coordinates.to_vec();
+        let spacing = None;
+        Spot {
+            row,
+            coordinates,
+            spacing,
+        }
+        .to_string()
+    };
+    assert_eq!(spot(Some(7), &[]), "row 7");
+    assert_eq!(spot(Some(7), &[0.5, 1.0]), "row 7 (0.5000, 1.0000)");
+    assert_eq!(spot(None, &[0.5]), "(0.5000)");
 }
