@@ -238,7 +238,7 @@ fn two_readings_are_told_and_more_points_decide() {
     let Advice::MorePoints(count) = refusal.advice else {
         panic!("{refusal}")
     };
-    assert_eq!(count, 2 * few.count);
+    assert_eq!(count, 3 * few.count);
     let many = denser("plate-hole", &few, count);
     assert_eq!(verified(&many, Pinned::default()), [1, 1, 0]);
 }
