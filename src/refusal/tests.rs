@@ -183,7 +183,7 @@ fn denser(feature: &str, few: &Drawing, count: usize) -> PointCloud<f64> {
     let drawing = Drawing {
         count,
         size,
-        ..few.clone()
+        ..*few
     };
     Feature::find(feature)
         .unwrap()
