@@ -23,10 +23,6 @@ pub(super) struct Meeting {
     pub(super) place: Vec<f64>,
     /// The angle between them, degrees: 180 where they continue each other.
     pub(super) angle: f64,
-    /// Distance of the points next to the place from the nearer sheet, that in the middle, unit of the data.
-    pub(super) beside: f64,
-    /// The same of the points that the sheets were fitted to, each from its own.
-    pub(super) usual: f64,
     /// By how much both sheets together turn within an edge of the mesh from the place, degrees.
     pub(super) bend: f64,
 }
@@ -48,8 +44,7 @@ impl Meeting {
             let points = ground.about(vertex, |x| face[x as usize] == own, walk);
             sheet(ground, &points, &mut walk.offset)
         };
-        let [(one, own), (other, others)] = [side(v)?, side(w)?];
-        let sheets = [one, other];
+        let sheets = [side(v)?, side(w)?];
         let mut place = ground.mean(&[v, w]);
         let start = place.clone();
         for _ in 0..STEPS {
@@ -66,38 +61,24 @@ impl Meeting {
         let bend = (sheets.iter().zip(ways.iter().flatten()))
             .map(|(sheet, way)| turn(sheet, &place, way, ground.edge, &mut walk.offset))
             .sum();
-        let mut off = |x: &[f64]| {
-            let each = sheets
-                .iter()
-                .map(|s| s.distance(x, f64::INFINITY, &mut walk.offset));
-            each.fold(f64::INFINITY, f64::min)
-        };
-        let mut beside: Vec<f64> = (ground.own(v).chain(ground.own(w))).map(&mut off).collect();
-        Some(Self {
-            place,
-            angle,
-            beside: middle(&mut beside),
-            usual: own.max(others),
-            bend,
-        })
+        Some(Self { place, angle, bend })
     }
 }
 
 /// The value in the middle, 0 for none.
-pub(super) fn middle(values: &mut [f64]) -> f64 {
+fn middle(values: &mut [f64]) -> f64 {
     match values.len() {
         0 => 0.0,
         count => *values.select_nth_unstable_by(count / 2, f64::total_cmp).1,
     }
 }
 
-/// A sheet through most of the points, and how far from it the one in the middle is.
-fn sheet(ground: &Ground<'_>, points: &[f64], offset: &mut Vec<f64>) -> Option<(SheetFit, f64)> {
+/// A sheet through most of the points.
+fn sheet(ground: &Ground<'_>, points: &[f64], offset: &mut Vec<f64>) -> Option<SheetFit> {
     let dimension = ground.mesh.vertices.dimension();
     let count = points.len() / dimension;
     let mut weights = vec![1.0; count];
     let mut fit = SheetFit::new(dimension);
-    let mut usual = 0.0;
     for _ in 0..=ROUNDS {
         if !fit.fit(points, &weights) {
             return None;
@@ -105,14 +86,13 @@ fn sheet(ground: &Ground<'_>, points: &[f64], offset: &mut Vec<f64>) -> Option<(
         let off: Vec<f64> = (points.chunks_exact(dimension))
             .map(|x| fit.distance(x, f64::INFINITY, offset))
             .collect();
-        usual = middle(&mut off.clone());
-        let far = FAR * usual + EXACT * ground.edge;
+        let far = FAR * middle(&mut off.clone()) + EXACT * ground.edge;
         for (weight, off) in weights.iter_mut().zip(&off) {
             let share = off / far;
             *weight = 1.0 / (1.0 + share * share).powi(2);
         }
     }
-    Some((fit, usual))
+    Some(fit)
 }
 
 /// By how much a sheet turns on the way from a place, degrees: a bend of a small radius turns as much beside the place as there.
