@@ -31,35 +31,56 @@ impl Meeting {
     /// Where the sheets of two faces meet between two vertices, each of which is on one of them; `None` where points are too few.
     ///
     /// Each sheet is fitted to the points of its own face, from its own side: on a surface that bends they continue each other, up to what
-    /// a quadratic leaves of a bend. Points are those of the nearest vertex, and next to a crease some are on the other face: those
-    /// farther off than most count less.
+    /// a quadratic leaves of a bend. Points are those of the nearest vertex, and those of the vertices at a seam are on either face: the
+    /// angle is that of the sheets beyond them where there are enough, and of all points those farther off than most count less.
     pub(super) fn of(
         ground: &Ground<'_>,
         [v, w]: [u32; 2],
         face: &[Option<u32>],
+        at_seam: &[bool],
         walk: &mut Walk,
     ) -> Option<Self> {
-        let mut side = |vertex: u32| {
-            let own = face[vertex as usize];
-            let points = ground.about(vertex, |x| face[x as usize] == own, walk);
-            sheet(ground, &points, &mut walk.offset)
-        };
-        let sheets = [side(v)?, side(w)?];
-        let mut place = ground.mean(&[v, w]);
-        let start = place.clone();
+        let own = |vertex: u32| move |x: u32| face[x as usize] == face[vertex as usize];
+        let near = [v, w].map(|vertex| ground.about(vertex, own(vertex), walk));
+        let beyond = [v, w].map(|vertex| {
+            let counts = |x: u32| !at_seam[x as usize];
+            ground.about_counting(vertex, own(vertex), counts, walk)
+        });
+        let start = ground.mean(&[v, w]);
+        let offset = &mut walk.offset;
+        let few = |points: &Vec<f64>| points.len() < ground.limits.enough * start.len();
+        let meeting = Self::of_sheets(ground, &near, &start, offset)?;
+        if beyond.iter().any(few) {
+            return Some(meeting);
+        }
+        // A bend of a small radius has flat sheets beyond it, and turns beside the place: near the place no less must be a crease.
+        let far = Self::of_sheets(ground, &beyond, &start, offset)?;
+        let share = |m: &Self| m.bend / (180.0 - m.angle).max(f64::EPSILON);
+        let bend = share(&meeting).max(share(&far)) * (180.0 - far.angle);
+        Some(Self { bend, ..far })
+    }
+
+    /// Where the sheets through two sets of points meet, beginning at a place between them.
+    fn of_sheets(
+        ground: &Ground<'_>,
+        points: &[Vec<f64>; 2],
+        start: &[f64],
+        offset: &mut Vec<f64>,
+    ) -> Option<Self> {
+        let [one, other] = points;
+        let sheets = [sheet(ground, one, offset)?, sheet(ground, other, offset)?];
+        let mut place = start.to_vec();
         for _ in 0..STEPS {
-            sheets
-                .iter()
-                .for_each(|s| s.project(&mut place, &mut walk.offset));
+            sheets.iter().for_each(|s| s.project(&mut place, offset));
         }
         // Sheets that continue each other meet anywhere.
         let moved = start.iter().zip(&place).map(|(a, b)| (a - b).powi(2));
         if moved.sum::<f64>() > ground.edge.powi(2) {
-            place = start;
+            place = start.to_vec();
         }
-        let Wedge { angle, ways } = wedge(&sheets, &place, &mut walk.offset)?;
+        let Wedge { angle, ways } = wedge(&sheets, &place, offset)?;
         let bend = (sheets.iter().zip(ways.iter().flatten()))
-            .map(|(sheet, way)| turn(sheet, &place, way, ground.edge, &mut walk.offset))
+            .map(|(sheet, way)| turn(sheet, &place, way, ground.edge, offset))
             .sum();
         Some(Self { place, angle, bend })
     }

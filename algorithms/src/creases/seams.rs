@@ -39,12 +39,16 @@ impl<'g, 'a> Seams<'g, 'a> {
         let parted: Vec<[u32; 2]> = (ground.edges.iter().copied())
             .filter(|&e| faces.parted(e).is_some())
             .collect();
+        let mut at_seam = vec![false; faces.of.len()];
+        for &v in parted.iter().flatten() {
+            at_seam[v as usize] = true;
+        }
         let meetings = execute::map_blocks(
             execute,
             EDGES_AT_ONCE,
             parted.len(),
             || ground.walk(),
-            |walk, k| Meeting::of(ground, parted[k], &faces.of, walk),
+            |walk, k| Meeting::of(ground, parted[k], &faces.of, &at_seam, walk),
         );
         let seam = |Trail { edges, ends }| {
             let between = |&k: &u32| ground.mean(&parted[k as usize]);
