@@ -1,6 +1,6 @@
 //! The built program, run as a user runs it.
 
-use crosscap_algorithms::surfaces::{Drawing, Feature, Random};
+use crosscap_algorithms::surfaces::{Drawing, Feature, Random, SampleSurface, Sampling};
 use crosscap_backends::files::{
     MeshExtras, PointOptions, read_indices, read_mesh, read_points, write_mesh, write_points,
 };
@@ -180,6 +180,80 @@ fn ball(count: usize) -> PointCloud<f64> {
         }
     }
     PointCloud::new(3, coordinates).unwrap()
+}
+
+// Memory
+
+/// The most memory that a run has held, in MiB, as its last line says.
+fn held(ran: &Ran) -> u64 {
+    let told = ran.err.trim_end().strip_suffix(" MiB at most").unwrap();
+    told.rsplit(' ').next().unwrap().parse().unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_cloud_that_does_not_fit_is_worked_on_in_tiles() {
+    let room = Room::new();
+    // Spheres in a row, so that halos are small beside the cloud.
+    let sphere = SampleSurface::find("sphere").unwrap();
+    let sphere = sphere.sample(&Sampling::new(25_000, 4)).unwrap().points;
+    let row = (0..12).flat_map(|k| {
+        let places = sphere.iter();
+        places.flat_map(move |p| [p[0] + 4.0 * f64::from(k), p[1], p[2]])
+    });
+    // A point that is there twice counts once, whatever becomes of the rows behind it.
+    let twice = sphere.point(9).iter().copied();
+    let row = PointCloud::new(3, twice.chain(row).collect()).unwrap();
+    write_points(room.path("p.npy"), &row).unwrap();
+    let run = "reconstruct p.npy -o m.npz --eps 0.6 --dl 0.3 --surface --threads 2";
+    room.run(run).expect(0);
+    let mesh = std::fs::read(room.path("m.npz")).unwrap();
+    let limit = 258;
+    let tiled = room
+        .run(&format!("{run} --memory-limit {limit}MiB --report r.json"))
+        .expect(0)
+        .complains("in memory a run with these 300001 points of R^3 takes up to")
+        .complains("tiles on")
+        .says("(verified)")
+        .says("1 duplicate point in the input");
+    assert!(held(&tiled) <= limit, "{}", tiled.err);
+    assert!(std::fs::read(room.path("m.npz")).unwrap() == mesh);
+    assert_eq!(room.files(), ["m.npz", "p.npy", "r.json"]);
+    // What tiles cannot do is refused before the work, with what would do.
+    room.run("reconstruct p.npy -o m.npz --memory-limit 258MiB")
+        .expect(2)
+        .complains("looks at all points together")
+        .complains("--surface`")
+        .complains("else --memory-limit");
+    room.run("reconstruct p.npy -o m.npz --eps 0.6 --dl 0.3 --memory-limit 258MiB")
+        .expect(2)
+        .complains("curves are not looked for in tiles")
+        .complains("--memory-limit 258MiB --surface`");
+    room.run(&format!("{run} --metric geodesic --memory-limit 258MiB"))
+        .expect(2)
+        .complains("parameter metric");
+    room.run(&format!("{run} --memory-limit 20MiB"))
+        .expect(2)
+        .complains("in tiles, too");
+}
+
+#[test]
+fn a_limit_of_memory_needs_a_file_in_rows() {
+    let room = Room::new();
+    room.write("p.csv", "1,2,3\n");
+    for points in ["p.csv", "p.npy --transpose", "p.npy --columns 0,1"] {
+        room.run(&format!(
+            "reconstruct {points} -o m.npz --memory-limit 1GiB"
+        ))
+        .expect(2)
+        .complains("some rows at a time");
+    }
+    room.run("reconstruct p.npy -o m.npz --memory-limit 2")
+        .expect(2)
+        .complains("no such file");
+    room.run("reconstruct p.npy -o m.npz --memory-limit 2X")
+        .expect(2)
+        .complains("2GiB, 1.5GB, 800MiB");
 }
 
 // Usage
@@ -953,6 +1027,57 @@ fn a_check_measures_in_the_lengths_that_a_mesh_was_made_with() {
         .says("input points far from the mesh");
 }
 
+/// A sphere of radius 1 with noise of half a spacing, and outliers, one in a hundred.
+fn noisy_sphere() -> PointCloud<f64> {
+    let random = &mut Random::new(8);
+    let mut rows = Vec::new();
+    for place in ball(2000).iter() {
+        let norm = place.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let far = (1.0 + 0.04 * random.normal()) / norm;
+        rows.extend(place.iter().map(|x| far * x));
+    }
+    rows.extend((0..60).map(|_| random.between(-2.0, 2.0)));
+    PointCloud::new(3, rows).unwrap()
+}
+
+/// What a run found out about noise and outliers a check finds out again: the mesh is verified, and a wrong one is not.
+#[test]
+fn a_mesh_of_noisy_points_is_verified_again_and_a_wrong_one_refused() {
+    let room = Room::new();
+    let points = noisy_sphere();
+    write_points(room.path("p.npy"), &points).unwrap();
+    room.run("reconstruct p.npy -o m.npz")
+        .expect(0)
+        .says("points moved onto fits")
+        .says("outliers");
+    room.run("check m.npz --points p.npy")
+        .expect(0)
+        .says("points moved onto fits")
+        .says("left out");
+    // A file that does not tell how it was made is judged as that of a run without parameters.
+    room.run("convert m.npz m.ply").expect(0);
+    room.run("check m.ply --points p.npy").expect(0);
+    room.run("check m.npz --points p.npy --prepare no")
+        .expect(1)
+        .says("input points far from the mesh");
+
+    // A cap is missing from the points: 11 spacings across.
+    let open: Vec<usize> = (0..points.len())
+        .filter(|&row| points.point(row)[2] < 0.9 || row >= 2000)
+        .collect();
+    write_points(room.path("open.npy"), &points.select(&open)).unwrap();
+    room.run("check m.npz --points open.npy")
+        .expect(1)
+        .says("points moved onto fits")
+        .says("gaps of the points that the mesh covers");
+    // The mesh is four times as far off as the points scatter, and more.
+    let mut file = read_mesh(room.path("m.npz")).unwrap();
+    let larger = file.mesh.vertices.coordinates().iter().map(|x| 1.5 * x);
+    file.mesh.vertices = PointCloud::new(3, larger.collect()).unwrap();
+    write_mesh(room.path("large.npz"), &file.mesh, &file.extras, None).unwrap();
+    room.run("check large.npz --points p.npy").expect(1);
+}
+
 #[test]
 fn crossings_are_taken_apart() {
     let room = Room::new();
@@ -1349,6 +1474,23 @@ fn a_refusal_advises_what_was_tried() {
         advised["eps"], advised["dl"]
     ))
     .expect(0);
+}
+
+/// Lengths in the spacing of the points are for one closed surface, and it is not for the user to say that again.
+#[test]
+fn a_metric_alone_chooses_what_goes_with_it() {
+    let room = Room::new();
+    sphere_points(&room);
+    let ran = room
+        .run("reconstruct points.npy -o mesh.npz --metric conformal")
+        .expect(0)
+        .says("half of the points have 60 others nearer than that")
+        .says("Betti numbers 1, 0, 1 over Q");
+    assert!(ran.out.contains("--surface"), "{}", ran.out);
+    // What is advised after a refusal is tried with the same metric.
+    room.run("reconstruct points.npy -o no.npz --eps 1.9 --dl 1.6 --metric conformal --surface")
+        .expect(1)
+        .complains("it is verified: Betti numbers 1, 0, 1");
 }
 
 #[test]

@@ -18,7 +18,7 @@ use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
 use crosscap_algorithms::tuning::FrontTuning;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::linear_program::LinearProgramTest;
-use crosscap_core::{Row, Scalar, StratifiedLandmarks, Triangulator};
+use crosscap_core::{Row, Scalar, StratifiedLandmarks, Triangulator, squared_distance};
 use proptest::prelude::*;
 use std::marker::PhantomData;
 
@@ -135,6 +135,20 @@ fn same(row: i64) -> i64 {
     row
 }
 
+/// Whether the distance of a landmark that only one of two choices has to one of either is the landmark separation, up to
+/// the rounding of single precision, in which it is less or more as it comes.
+fn at_the_separation(case: &Case, rows: &[Vec<usize>; 2]) -> bool {
+    let [one, other] = rows;
+    let alone = |r: &&usize| one.contains(*r) != other.contains(*r);
+    let at = |r: usize| case.points.point(r);
+    let dl = case.parameters.dl;
+    one.iter().chain(other).filter(alone).any(|&r| {
+        let away = |&q: &usize| squared_distance(at(r), at(q)).sqrt();
+        let mut all = one.iter().chain(other).map(away);
+        all.any(|d| (d / dl - 1.0).abs() < 4.0 * f64::from(f32::EPSILON))
+    })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 3, max_shrink_iters: 0, ..ProptestConfig::default() })]
 
@@ -216,7 +230,13 @@ proptest! {
             let narrow = waist_of(&rounded, &oracle, None);
             let oracle = EuclideanOracle::new(rounded.points.clone()).unwrap();
             let wide = waist_of(&rounded, &oracle, None);
-            prop_assert_eq!(&narrow.rows, &wide.rows);
+            let rows = [&narrow.rows, &wide.rows]
+                .map(|rows| rows.iter().map(|r| r.index()).collect::<Vec<_>>());
+            if rows[0] != rows[1] {
+                // Single precision may take a distance that is the separation for less or for more, and no other.
+                prop_assert!(at_the_separation(&rounded, &rows), "{:?}", rows);
+                continue;
+            }
             prop_assert_eq!(&narrow.waist.strata, &wide.waist.strata);
             let narrow = triangulated(&narrow.waist);
             prop_assert_eq!(narrow, triangulated(&wide.waist));

@@ -13,8 +13,8 @@ use crosscap_algorithms::metric::{
 };
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::{
-    BareCurve, Book, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing, OneSheet,
-    TriplePoint, TwoPlanes, YJunction,
+    BareCurve, Book, Boundary, ConePoint, CurveOnSheet, CurveThroughSheet, IsolatedCrossing,
+    OneSheet, TriplePoint, TwoPlanes, YJunction,
 };
 use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, MinimumCircumradius, Rules};
 use crosscap_algorithms::tuning::FrontTuning;
@@ -186,6 +186,9 @@ law_tests! {
             &IsolatedCrossing::new(0.1, 0.05).unwrap(),
             &Instances::new(&instances::crossing_in_four_dimensions)
         ),
+        settings: settings();
+    mod cone_point =
+        model(&ConePoint::new(0.1, 0.05).unwrap(), &of(150..=300, &instances::cone_point)),
         settings: settings();
     // A fifth of them are on the line, and two thirds of those in the neighborhood.
     mod curve_through_sheet =

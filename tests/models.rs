@@ -19,7 +19,7 @@ struct Case {
     links: &'static [(LinkKind, Option<usize>)],
 }
 
-const CASES: [Case; 13] = [
+const CASES: [Case; 15] = [
     Case {
         surface: "three_spheres",
         points: 60_000,
@@ -145,6 +145,24 @@ const CASES: [Case; 13] = [
         models: &ModelName::AUTO,
         betti: [1, 0, 0],
         links: &[(LinkKind::SideSheetEnd, Some(2))],
+    },
+    Case {
+        surface: "double_cone",
+        points: 4_000,
+        eps: 0.302,
+        dl: 0.151,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::IsolatedCrossing, Some(1)), (LinkKind::Arc, None)],
+    },
+    Case {
+        surface: "cayley",
+        points: 8_000,
+        eps: 0.472,
+        dl: 0.236,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 1],
+        links: &[(LinkKind::IsolatedCrossing, Some(4)), (LinkKind::Arc, None)],
     },
 ];
 

@@ -8,3 +8,4 @@ pub mod interrupt;
 pub mod linear_program;
 pub mod parallel;
 pub mod picture;
+pub mod tiles;

@@ -100,6 +100,14 @@ pub enum Error {
         /// What was returned.
         detail: String,
     },
+    /// What is kept outside of memory could not be fetched: a tile in a file, say.
+    #[error("cannot fetch {what}: {reason}")]
+    Storage {
+        /// What was wanted.
+        what: String,
+        /// What the system said.
+        reason: String,
+    },
     /// The run was stopped from outside before it had a result.
     #[error("stopped before there was a result")]
     Interrupted,

@@ -60,7 +60,7 @@ def test_points_come_from_files_in_chunks_as_they_are(torus, whole, tmp_path):
     wrong[3000, 1] = np.nan
     with pytest.raises(ValueError, match="row 3000, column 1 is not a finite number"):
         crosscap.tiles.reconstruct(wrong, EPS, DL, **SURFACE)
-    with pytest.raises(ValueError, match=r"no \.npy file"):
+    with pytest.raises(ValueError, match=r"no \.npy or \.parquet"):
         (tmp_path / "empty").mkdir()
         crosscap.tiles.reconstruct(tmp_path / "empty", EPS, DL, **SURFACE)
 

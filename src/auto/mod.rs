@@ -7,6 +7,7 @@ mod alone;
 mod attempt;
 mod density;
 mod input;
+mod measured;
 mod moves;
 mod needs;
 mod pinned;
@@ -17,10 +18,12 @@ mod search;
 mod symptoms;
 #[cfg(test)]
 mod tests;
+mod worked_on;
 
 pub use attempt::{Attempt, End, Topology};
 pub use density::Density;
 pub use input::Input;
+pub use measured::{Measured, Measuring};
 pub use moves::Move;
 pub(crate) use moves::{CLOSEST, ROOMY};
 pub use pinned::Pinned;

@@ -66,16 +66,26 @@ impl Pinned {
         self.prepare.unwrap_or(self.complete().is_none())
     }
 
+    /// Whether lengths are those in the spacing of the points, in which there is one closed surface and nothing else.
+    fn is_spaced(&self) -> bool {
+        self.metric == Some(MetricName::Conformal)
+    }
+
     fn models(&self) -> Vec<ModelName> {
         match (&self.models, self.complete()) {
             (Some(models), _) => models.clone(),
             (None, Some(_)) => vec![ModelName::TwoPlanes],
+            (None, None) if self.is_spaced() => vec![ModelName::TwoPlanes],
             (None, None) => ModelName::AUTO.to_vec(),
         }
     }
 
     /// eps and dl by the density, and why in a few words; each gives way to what is pinned.
     pub(super) fn lengths(&self, density: &Density) -> ([f64; 2], String) {
+        let (share, density) = match self.is_spaced() {
+            true => ("half of the points", &density.even()),
+            false => ("99 of 100 points", density),
+        };
         let Density { neighbors, .. } = density;
         let (eps, of_eps) = match (self.eps, self.dl.map(|dl| dl / SEPARATION)) {
             (Some(eps), _) => (eps, "given".into()),
@@ -83,15 +93,15 @@ impl Pinned {
                 (three_digits(least), "twice dl".into())
             }
             (None, _) => {
-                let told = format!("99 of 100 points have {neighbors} others nearer than that");
+                let told = format!("{share} have {neighbors} others nearer than that");
                 (three_digits(density.reach), told)
             }
         };
-        let share = eps * SEPARATION;
+        let usual = eps * SEPARATION;
         let (dl, of_dl) = match (self.dl, self.tri_eps.map(|radius| radius / 2.0)) {
             (Some(dl), _) => (dl, "given"),
-            (None, Some(most)) if most < share => (three_digits(most), "half of tri-eps"),
-            (None, _) => (three_digits(share), "half of eps"),
+            (None, Some(most)) if most < usual => (three_digits(most), "half of tri-eps"),
+            (None, _) => (three_digits(usual), "half of eps"),
         };
         let reason = format!("eps {eps} ({of_eps}), dl {dl} ({of_dl})");
         ([eps, dl], reason)
@@ -101,6 +111,8 @@ impl Pinned {
     pub fn parameters(&self, eps: f64, dl: f64) -> Parameters {
         let usual = Parameters::new(eps, dl);
         let spaces = Spaces::default();
+        // What is asked for by halves is asked for as it can be had; a run with both lengths is made as it is told.
+        let closed = self.is_spaced() && self.complete().is_none();
         Parameters {
             eps,
             tri_eps: self.tri_eps,
@@ -109,7 +121,7 @@ impl Pinned {
             ep: self.ep.unwrap_or(usual.ep),
             dl,
             seed: self.seed.unwrap_or(usual.seed),
-            surface: self.surface.unwrap_or(usual.surface),
+            surface: self.surface.unwrap_or(usual.surface || closed),
             boundary: self.boundary.clone(),
             models: self.models(),
             method: self.method.unwrap_or(usual.method),

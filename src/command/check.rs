@@ -4,14 +4,16 @@ use super::failure::Failure;
 use super::findings::{Findings, pretty};
 use super::number::{betti, counted, median, positive};
 use super::output;
+use super::parameters::yes_or_no;
 use super::points::PointArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
 use crosscap::MetricName;
+use crosscap::auto::{Measured, Measuring};
 use crosscap_algorithms::certificate::{CertificateOptions, SpecialPoint, certify};
-use crosscap_algorithms::creases::{CreaseLimits, Creases, creases};
 use crosscap_algorithms::homology::{LocalHomology, homology, local_homology};
 use crosscap_algorithms::pieces::{Pieces, pieces};
+use crosscap_algorithms::prepare::PreparationSummary;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::files::{MESH_EXTENSIONS, MeshExtras, read_mesh, write_mesh};
 use crosscap_backends::parallel::Threads;
@@ -49,6 +51,11 @@ pub struct Check {
     /// Separation of the landmarks, unit of the data [default: what the mesh was made with, or 3/4 of the median edge]
     #[arg(long, visible_alias = "landmark-separation", value_name = "L", value_parser = positive)]
     dl: Option<f64>,
+
+    /// Leave outliers out and allow for noise, as a reconstruction without parameters does: yes or no [default: what the mesh
+    /// was made with, or yes]
+    #[arg(long, value_name = "YES|NO", value_parser = yes_or_no, requires = "points")]
+    prepare: Option<bool>,
 
     /// The surface is known to have no boundary: boundary edges are refused
     #[arg(long)]
@@ -89,26 +96,34 @@ impl Check {
         let progress = Progress::new("checking");
         let known = file.extras.metadata.get("dl").and_then(Value::as_f64);
         let special_points = self.declared(&file.extras.metadata)?;
-        let scale = match (&points, self.dl) {
-            (Some(points), None) => metric_of(&file.extras.metadata).separation_scale(points)?,
-            _ => None,
-        };
+        let metric = metric_of(&file.extras.metadata);
         let options = CertificateOptions {
             special_points: &special_points,
-            points: points.as_ref(),
             landmark_separation: self.dl.or(known.filter(|&dl| dl > 0.0)),
-            separation_scale: scale.as_deref(),
             closed: self.closed,
+            faithful: metric != MetricName::Lifted,
             ..CertificateOptions::default()
+        };
+        let measuring = Measuring {
+            prepare: self
+                .prepare
+                .unwrap_or_else(|| is_prepared(&file.extras.metadata)),
+            metric: self.dl.is_none().then_some(metric),
+            threads: 0,
         };
         let homology = homology(&mesh.complex)?;
         let local = match self.local {
             true => Some(self.local_check(mesh, &file.extras.metadata)?),
             false => None,
         };
-        let certificate = certify(mesh, &options);
+        let (certificate, creases, preparation) = match &points {
+            None => (certify(mesh, &options), None, None),
+            Some(points) => {
+                let found = Measured::of(mesh, points, &options, &measuring)?;
+                (found.certificate, Some(found.creases), found.preparation)
+            }
+        };
         let pieces = pieces(mesh);
-        let creases = self.creases(mesh, points.as_ref())?;
         drop(progress);
         if let Some(path) = &self.normalization {
             let pieces = pieces.as_ref().map_err(|error| {
@@ -128,6 +143,7 @@ impl Check {
                 creases: creases.as_ref(),
             },
             local.as_ref(),
+            preparation.as_ref(),
         )
     }
 
@@ -150,7 +166,12 @@ impl Check {
     }
 
     /// Prints what was found, and fails where it is not verified.
-    fn tell(&self, findings: &Findings<'_>, local: Option<&LocalHomology>) -> Result<(), Failure> {
+    fn tell(
+        &self,
+        findings: &Findings<'_>,
+        local: Option<&LocalHomology>,
+        preparation: Option<&PreparationSummary>,
+    ) -> Result<(), Failure> {
         let sound = local.is_none_or(|local| local.failures.is_empty());
         let verified = findings.certificate.verdict().is_verified() && sound;
         if self.json {
@@ -158,12 +179,18 @@ impl Check {
             if let Some(local) = local {
                 all.insert("local".into(), json!(local));
             }
+            if let Some(preparation) = preparation {
+                all.insert("preparation".into(), json!(preparation));
+            }
             all.insert("crosscap".into(), json!(env!("CARGO_PKG_VERSION")));
             all.insert("file".into(), json!(self.mesh.display().to_string()));
             say(pretty(&Value::Object(all)).trim_end())?;
         } else {
             if let Some(local) = local {
                 say(told(local, findings.mesh))?;
+            }
+            if let Some(preparation) = preparation {
+                say(preparation.to_string().trim_end())?;
             }
             say(findings.lines())?;
         }
@@ -178,24 +205,6 @@ impl Check {
             "{}: not verified{why}",
             self.mesh.display()
         )))
-    }
-
-    /// Where the surface bends sharply, which the points show.
-    fn creases(
-        &self,
-        mesh: &Mesh,
-        points: Option<&PointCloud<f64>>,
-    ) -> Result<Option<Creases>, Failure> {
-        let Some(points) = points else {
-            return Ok(None);
-        };
-        let threads = Threads::new(0)?;
-        Ok(Some(creases(
-            mesh,
-            points,
-            &CreaseLimits::MEASURED,
-            &threads,
-        )?))
     }
 
     /// The points that the mesh declares, as it declares which edges are on curves.
@@ -300,4 +309,11 @@ fn told(local: &LocalHomology, mesh: &Mesh) -> String {
 fn metric_of(metadata: &Value) -> MetricName {
     let name = metadata.pointer("/spaces/metric").and_then(Value::as_str);
     name.and_then(|name| name.parse().ok()).unwrap_or_default()
+}
+
+/// Whether something was done about outliers and noise before a mesh was made, as its file tells. Of a mesh from elsewhere that is not
+/// known, and it is judged as that of a run without parameters.
+fn is_prepared(metadata: &Value) -> bool {
+    let told = metadata.get("prepared").and_then(Value::as_bool);
+    told.unwrap_or(metadata.get("dl").is_none())
 }

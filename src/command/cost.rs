@@ -1,5 +1,6 @@
 //! What a run cost: time and memory.
 
+use super::bytes::shown;
 use std::fmt;
 use std::time::{Duration, Instant};
 
@@ -26,7 +27,7 @@ impl fmt::Display for Cost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", time(self.0.elapsed()))?;
         match peak_memory() {
-            Some(bytes) => write!(f, ", {} at most", memory(bytes)),
+            Some(bytes) => write!(f, ", {} at most", shown(bytes)),
             None => Ok(()),
         }
     }
@@ -39,15 +40,6 @@ pub fn time(spent: Duration) -> String {
         0..60 => format!("{:.1} s", spent.as_secs_f64()),
         60..3600 => format!("{} min {} s", seconds / 60, seconds % 60),
         _ => format!("{} h {} min", seconds / 3600, seconds / 60 % 60),
-    }
-}
-
-fn memory(bytes: u64) -> String {
-    let mebibytes = bytes as f64 / f64::from(1 << 20);
-    if mebibytes < 1024.0 {
-        format!("{mebibytes:.0} MiB")
-    } else {
-        format!("{:.1} GiB", mebibytes / 1024.0)
     }
 }
 
@@ -64,12 +56,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn time_and_memory_in_fitting_units() {
+    fn time_in_fitting_units() {
         assert_eq!(time(Duration::from_millis(1_234)), "1.2 s");
         assert_eq!(time(Duration::from_secs(125)), "2 min 5 s");
         assert_eq!(time(Duration::from_secs(7_260)), "2 h 1 min");
-        assert_eq!(memory(300 << 20), "300 MiB");
-        assert_eq!(memory(1536 << 20), "1.5 GiB");
     }
 
     #[cfg(target_os = "linux")]

@@ -3,10 +3,10 @@
 use super::failure::Failure;
 use super::findings::pretty;
 use super::number::counted;
+use super::observed::reconstruct;
 use super::outcome::{findings, reasons, report, write_reconstruction};
 use super::paper::paper_parameters;
 use super::parameters::MethodName;
-use super::reconstruct::reconstruct;
 use super::terminal::{Progress, complain, say};
 use super::{overlay, picture};
 use clap::Args;
@@ -106,6 +106,7 @@ impl Demo {
             parameters,
             outcome,
             outcome.is_verified(),
+            false,
         )?;
         let input = json!({ "surface": surface, "scalar": cloud.scalar_name() });
         let report = pretty(&report(outcome, input));

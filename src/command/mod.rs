@@ -3,6 +3,7 @@
 //! A part of the library, so that what else is built on it brings the same command line: the Python package
 //! does. Its items are no public interface.
 
+mod bytes;
 mod check;
 mod choice;
 mod compare;
@@ -16,8 +17,12 @@ mod dimension;
 pub mod estimators;
 mod failure;
 pub mod findings;
+mod input;
 pub mod layout;
+mod limited;
+mod needs;
 mod number;
+mod observed;
 pub mod outcome;
 mod output;
 pub mod overlay;

@@ -72,11 +72,14 @@ pub fn reasons(outcome: &Outcome) -> Vec<String> {
 }
 
 /// Writes the mesh with its pieces and with what it was made from; nothing in it changes from run to run.
+///
+/// `prepared` says whether something was done about outliers and noise.
 pub fn write_reconstruction(
     path: &Path,
     parameters: &Parameters,
     outcome: &Outcome,
     verified: bool,
+    prepared: bool,
 ) -> Result<(), Failure> {
     let mut metadata = json!({
         "crosscap": env!("CARGO_PKG_VERSION"),
@@ -97,6 +100,9 @@ pub fn write_reconstruction(
     if let Some(given) = &outcome.report.given {
         metadata["distances"] = json!(given);
         metadata["unchecked"] = json!(outcome.certificate.unchecked());
+    }
+    if prepared {
+        metadata["prepared"] = json!(true);
     }
     if !outcome.special_points.is_empty() {
         metadata["special_points"] = json!(outcome.special_points);

@@ -64,7 +64,7 @@ pub fn extension(path: &Path) -> String {
         .unwrap_or_default()
 }
 
-fn folder_of(path: &Path) -> &Path {
+pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),

@@ -59,6 +59,13 @@ pub struct PointArguments {
 }
 
 impl PointArguments {
+    /// Whether the points are taken as they stand in their file.
+    pub fn is_plain(&self) -> bool {
+        let chosen = self.columns.is_some() || self.atoms.is_some() || self.topology.is_some();
+        let aligned = self.align.is_some() || self.reference.is_some();
+        !(self.array.is_some() || self.transpose || chosen || aligned)
+    }
+
     /// Reads the points.
     pub fn read(&self, path: &Path) -> Result<AnyCloud, Failure> {
         let options = PointOptions {

@@ -1,23 +1,23 @@
 //! `crosscap reconstruct`: points to mesh.
 
-use super::estimators::EstimatorName;
+use super::bytes::bytes;
 use super::failure::Failure;
 use super::findings::pretty;
+use super::input::Input;
+use super::limited::Limited;
 use super::number::{counted, positive};
+use super::observed::observed;
 use super::outcome::{duplicates, findings, report, told, verdict, write_reconstruction};
 use super::parameters::{ATTEMPTS, Help, MAIN, MethodName, ParameterArguments};
-
 use super::points::PointArguments;
-use super::terminal::{Progress, complain, say};
+use super::terminal::say;
 use super::{choice, output, overlay, picture, refused, repeat};
 use clap::Args;
 use crosscap::auto::USUAL_TRIES;
-use crosscap::pipeline::{Outcome, Parameters, Pipeline};
+use crosscap::pipeline::Outcome;
 use crosscap::{Advice, Auto, Pinned, Refusal};
-use crosscap_backends::files::{
-    AnyCloud, Distances, MESH_EXTENSIONS, read_distances, read_indices, write_bytes_whole,
-};
-use crosscap_core::{Error, PointCloud};
+use crosscap_backends::files::{MESH_EXTENSIONS, read_distances, read_indices, write_bytes_whole};
+use crosscap_core::Error;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -90,6 +90,13 @@ pub struct Reconstruct {
     #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "SECONDS", value_parser = positive)]
     time_limit: Option<f64>,
 
+    /// Bytes of memory, about: 2GiB, 800MiB. More points than that stay in their file (.npy) and are worked on in tiles
+    ///
+    /// What the run takes in memory is foretold and said. In tiles the mesh is the same, byte for byte; they need --eps, --dl and
+    /// --surface, and a scratch file beside the mesh, about twice as large as the points.
+    #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "BYTES", value_parser = bytes, conflicts_with = "distances")]
+    memory_limit: Option<u64>,
+
     /// Report to write, JSON: version, parameters, counts and seconds of every stage, homology, certificate
     ///
     /// Written also when there is no verified mesh, with what went wrong, where, and what was tried.
@@ -120,13 +127,7 @@ impl Reconstruct {
         // Refuse what can be refused before the work begins.
         self.parameters.pinned(Vec::new())?;
         self.check_outputs()?;
-        let input = match &self.distances {
-            Some(path) => Input::Distances(read_distances(path)?),
-            None => {
-                let cloud = self.choice.read(self.input())?;
-                Input::Points(cloud.to_f64(), cloud.scalar_name())
-            }
-        };
+        let (input, searches) = self.read()?;
         if input.len() < LEAST_POINTS {
             return Err(Failure::usage(format!(
                 "{}: found {}, expected at least {LEAST_POINTS}, what one neighborhood needs",
@@ -135,14 +136,16 @@ impl Reconstruct {
             )));
         }
         let pinned = self.parameters.pinned(self.boundary_rows(input.len())?)?;
+        let whole = match input.whole() {
+            Ok(whole) => whole,
+            Err(limited) => return self.in_tiles(&input, limited, &pinned),
+        };
         let estimator = self.parameters.estimator;
         let mut auto = Auto::new(pinned.clone()).tries(self.tries.into());
         if let Some(seconds) = self.time_limit {
             auto = auto.time_limit(Duration::from_secs_f64(seconds));
         }
-        let search = auto.search(input.borrowed(), &mut |parameters| {
-            observed(parameters, estimator)
-        })?;
+        let search = auto.search(whole, &mut |parameters| observed(parameters, estimator))?;
         let lines = choice::chosen(&self.input().display().to_string(), &pinned, &search);
         if !lines.is_empty() {
             say(lines.join("\n"))?;
@@ -150,7 +153,55 @@ impl Reconstruct {
         let told = json!({ "density": search.density, "preparation": search.preparation, "attempts": search.attempts, "doubt": search.doubt });
         match search.into_verified(input.places()) {
             Ok(outcome) => self.write(&input, &outcome, true, &told),
-            Err(refusal) => self.refuse(&input, &pinned, *refusal, &told),
+            Err(mut refusal) => {
+                let options = match searches {
+                    true => self.better(whole, &pinned, &refusal)?,
+                    false => None,
+                };
+                let options = options.map(|(advice, options)| {
+                    refusal.advice = advice;
+                    options
+                });
+                self.refuse(&input, &refusal, options.as_deref(), &told)
+            }
+        }
+    }
+
+    /// The input, and whether there is memory for a search beside the run that was asked for.
+    fn read(&self) -> Result<(Input, bool), Failure> {
+        if let Some(path) = &self.distances {
+            return Ok((Input::Distances(read_distances(path)?), true));
+        }
+        let mut searches = true;
+        if let Some(limit) = self.memory_limit {
+            let pinned = self.parameters.pinned(Vec::new())?;
+            let limited = Limited::open(self.input(), &self.choice, &pinned, limit)?;
+            searches = limited.leaves_room_for_a_search();
+            if !limited.fits() {
+                return Ok((Input::Tiles(Box::new(limited)), false));
+            }
+        }
+        let cloud = self.choice.read(self.input())?;
+        let name = cloud.scalar_name();
+        Ok((Input::Points(cloud.into_f64(), name), searches))
+    }
+
+    /// The same reconstruction without the points in memory.
+    fn in_tiles(&self, input: &Input, limited: &Limited, pinned: &Pinned) -> Result<(), Failure> {
+        if self.cut_out.is_some() {
+            return Err(Failure::usage(
+                "--cut-out looks at all points together, which --memory-limit leaves in their file: leave one of them out",
+            ));
+        }
+        let estimator = self.parameters.estimator;
+        let scratch = output::folder_of(&self.output);
+        let end = limited.reconstruct(pinned, scratch, |parameters| {
+            observed(parameters, estimator)
+        })?;
+        let told = json!({ "memory": limited.told() });
+        match end {
+            Ok(outcome) => self.write(input, &outcome, true, &told),
+            Err(refusal) => self.refuse(input, &refusal, None, &told),
         }
     }
 
@@ -158,19 +209,14 @@ impl Reconstruct {
     fn refuse(
         &self,
         input: &Input,
-        pinned: &Pinned,
-        mut refusal: Refusal,
+        refusal: &Refusal,
+        options: Option<&str>,
         told: &Value,
     ) -> Result<(), Failure> {
-        let better = self.better(input, pinned, &refusal)?;
-        let options = better.map(|(advice, options)| {
-            refusal.advice = advice;
-            options
-        });
-        refused::tell(&refusal, options.as_deref());
+        refused::tell(refusal, options);
         let places = input.places();
         if let (Some(path), Some(points)) = (&self.cut_out, places) {
-            refused::write_cut_out(path, &refusal, points)?;
+            refused::write_cut_out(path, refusal, points)?;
         }
         if self.keep_unverified
             && let Ok(outcome) = &refusal.outcome
@@ -183,10 +229,10 @@ impl Reconstruct {
         }
         if let Some(path) = &self.report {
             let input = self.described(input);
-            refused::write_report(path, &refusal, options.as_deref(), input, told)?;
+            refused::write_report(path, refusal, options, input, told)?;
         }
         if let Some(path) = &self.picture {
-            refused::write_picture(path, &picture::title(self.input()), &refusal, places)?;
+            refused::write_picture(path, &picture::title(self.input()), refusal, places)?;
         }
         Err(Failure::NotVerified(format!(
             "{}: no verified mesh, none written (--keep-unverified writes it as it is)",
@@ -198,7 +244,7 @@ impl Reconstruct {
     /// to give them by in place of those two.
     fn better(
         &self,
-        input: &Input,
+        whole: crosscap::auto::Input<'_>,
         pinned: &Pinned,
         refusal: &Refusal,
     ) -> Result<Option<(Advice, String)>, Failure> {
@@ -214,12 +260,13 @@ impl Reconstruct {
         let estimator = self.parameters.estimator;
         let search = Auto::new(free.clone())
             .tries(TRIES_FOR_ADVICE)
-            .search(input.borrowed(), &mut |parameters| {
-                observed(parameters, estimator)
-            })?;
-        if !search.is_verified() {
-            return Ok(None);
-        }
+            .search(whole, &mut |parameters| observed(parameters, estimator));
+        let search = match search {
+            Ok(search) if search.is_verified() => search,
+            Err(Error::Interrupted) => return Err(Error::Interrupted.into()),
+            // What is pinned may leave nothing to choose; that is no fault of the refused run.
+            Ok(_) | Err(_) => return Ok(None),
+        };
         let attempt = search.attempts.get(search.chosen);
         let found = attempt.and_then(|a| Some((a.parameters.clone(), a.end.topology()?.clone())));
         let prepared = search.preparation.is_some();
@@ -314,7 +361,9 @@ impl Reconstruct {
             }
             write_bytes_whole(path, pretty(&report).as_bytes())?;
         }
-        write_reconstruction(&self.output, &outcome.report.parameters, outcome, verified)?;
+        let prepared = !search["preparation"].is_null();
+        let parameters = &outcome.report.parameters;
+        write_reconstruction(&self.output, parameters, outcome, verified, prepared)?;
         let mut lines = vec![
             format!("{}: {} ({verdict})", self.output.display(), findings.size()),
             format!("Betti numbers {}", findings.topology()),
@@ -333,64 +382,4 @@ impl Reconstruct {
         }
         say(lines.join("\n"))
     }
-}
-
-/// What a surface is reconstructed from.
-enum Input {
-    /// Places, and the type that their file has them in.
-    Points(PointCloud<f64>, &'static str),
-    Distances(Distances),
-}
-
-impl Input {
-    fn len(&self) -> usize {
-        match self {
-            Self::Points(cloud, _) => cloud.len(),
-            Self::Distances(distances) => distances.len(),
-        }
-    }
-
-    /// The points, where there are any.
-    fn places(&self) -> Option<&PointCloud<f64>> {
-        match self {
-            Self::Points(cloud, _) => Some(cloud),
-            Self::Distances(_) => None,
-        }
-    }
-
-    fn borrowed(&self) -> crosscap::auto::Input<'_> {
-        match self {
-            Self::Points(cloud, _) => crosscap::auto::Input::Points(cloud),
-            Self::Distances(distances) => crosscap::auto::Input::Distances(distances),
-        }
-    }
-
-    fn scalar_name(&self) -> &'static str {
-        match self {
-            Self::Points(_, name) => name,
-            Self::Distances(_) => "f64",
-        }
-    }
-}
-
-/// Runs the pipeline with progress.
-pub fn reconstruct(cloud: &AnyCloud, parameters: Parameters) -> Result<Outcome, Error> {
-    observed(parameters, EstimatorName::default())?.reconstruct(&cloud.to_f64())
-}
-
-/// A pipeline whose progress is shown, and its warnings as they come.
-fn observed(parameters: Parameters, estimator: EstimatorName) -> Result<Pipeline, Error> {
-    let progress = Progress::of_stages();
-    let shown = progress.clone();
-    let dt = parameters.dt;
-    let mut pipeline = Pipeline::new(parameters)?
-        .on_stage(move |stage| shown.enter(stage))
-        .on_warning(move |warning| {
-            progress.suspend(|| complain(format_args!("warning: {warning}")));
-        });
-    // The pipeline has principal components of its own, of all points together.
-    if estimator != EstimatorName::Pca {
-        pipeline = pipeline.estimator(estimator.local(dt)?);
-    }
-    Ok(pipeline)
 }

@@ -28,6 +28,14 @@ impl Pipeline {
         reach * (1.0 + 1e-9)
     }
 
+    /// Whether tiles can be asked for all that this pipeline wants to know.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for the first thing that they cannot.
+    pub fn takes_tiles(&self) -> Result<(), Error> {
+        self.parts.takes_tiles()
+    }
+
     /// Reconstructs the surface that a cloud was sampled from which is in `tiles`, made with the
     /// [seed](super::Parameters::seed) and the [halo](Self::tile_halo) of this pipeline. The mesh and the verdict are those of
     /// [`reconstruct`](Self::reconstruct) on the whole cloud, whatever the tiles are.
@@ -153,9 +161,9 @@ impl Parts {
     ) -> Report {
         Report {
             version: env!("CARGO_PKG_VERSION"),
-            points: tiles.points(),
+            points: tiles.points() + tiles.left_out(),
             dimension: tiles.dimension(),
-            duplicates: 0,
+            duplicates: tiles.left_out(),
             plugins: PluginNames {
                 metric: "euclidean".into(),
                 oracle: "tiles".into(),

@@ -65,7 +65,7 @@ impl Located for Tiled<'_> {
     }
 
     fn input(&self, row: Row) -> InputRow {
-        InputRow::new(row.index())
+        InputRow::new(self.tiles.input_row(CloudRow::new(row.index())))
     }
 }
 
@@ -183,11 +183,13 @@ impl Maker for Tiled<'_> {
         let picked: Vec<CloudRow> = (evidence_rows(points, &options.limits).into_iter())
             .map(CloudRow::new)
             .collect();
-        let mut all = self.landmarks_of(&made.waist);
-        all.extend(&self.tiles.rows(picked.clone())?);
-        let places = evidence_places(mesh, dl, &options);
-        all.extend(&self.tiles.nearest(&places)?);
-        let all = all.sorted();
+        let all = {
+            let mut all = self.landmarks_of(&made.waist);
+            all.extend(&self.tiles.rows(picked.clone())?);
+            let places = evidence_places(mesh, dl, &options);
+            all.extend(&self.tiles.nearest(&places)?);
+            all.sorted()
+        };
         let cloud = all.cloud()?;
         let looked_at: Vec<usize> = picked.iter().filter_map(|&row| all.find(row)).collect();
         let dropped = made.triangulation.dropped.iter();
@@ -209,7 +211,7 @@ impl Maker for Tiled<'_> {
         let violations = cover.flat_map(|report| &mut report.violations);
         for place in violations.flat_map(|violation| &mut violation.places) {
             if let Place::Point(row) = place {
-                *row = all.rows()[*row].index();
+                *row = self.tiles.input_row(all.rows()[*row]);
             }
         }
         Ok(certificate)

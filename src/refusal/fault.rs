@@ -144,6 +144,8 @@ impl fmt::Display for Spot {
             ""
         };
         match self.row {
+            // Whoever has no points at hand knows no coordinates.
+            Some(row) if shown.is_empty() => write!(f, "row {row}"),
             Some(row) => write!(f, "row {row} ({}{more})", shown.join(", ")),
             None => write!(f, "({}{more})", shown.join(", ")),
         }

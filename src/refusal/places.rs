@@ -89,9 +89,10 @@ fn of_violation<'a>(
         ViolationKind::UndeclaredBoundary | ViolationKind::BoundaryOfClosed => {
             Some(FaultKind::Ends)
         }
-        ViolationKind::InadmissibleLink | ViolationKind::SplitLink | ViolationKind::Pinch => {
-            Some(FaultKind::Unclaimed)
-        }
+        ViolationKind::InadmissibleLink
+        | ViolationKind::SplitLink
+        | ViolationKind::Pinch
+        | ViolationKind::TouchingParts => Some(FaultKind::Unclaimed),
         ViolationKind::BridgedGap | ViolationKind::BareStretch => Some(FaultKind::Gap),
         ViolationKind::MergedSheets => Some(FaultKind::Merged),
         _ => None,

@@ -1,8 +1,9 @@
 //! Kinds of refusals, each provoked, and its advice followed to a verified mesh.
 
-use super::{Advice, FaultKind, Refusal};
-use crate::auto::{Auto, Pinned};
+use super::{Advice, FaultKind, Refusal, Spot};
+use crate::auto::{Auto, Input, Pinned};
 use crate::pipeline::{Outcome, Parameters, Pipeline};
+use crosscap_algorithms::certificate::Limits;
 use crosscap_algorithms::singularity::ModelName;
 use crosscap_algorithms::surfaces::{Drawing, Feature, Random, SampleSurface, Sampling};
 use crosscap_core::PointCloud;
@@ -157,4 +158,104 @@ fn a_crossing_that_no_asked_model_claims_is_claimed_by_all_together() {
         ..pinned
     };
     assert_eq!(verified(&cloud, all), [1, 0, 0]);
+}
+
+#[test]
+fn a_place_is_told_as_far_as_it_is_known() {
+    let spot = |row, coordinates: &[f64]| {
+        let coordinates = coordinates.to_vec();
+        let spacing = None;
+        Spot {
+            row,
+            coordinates,
+            spacing,
+        }
+        .to_string()
+    };
+    assert_eq!(spot(Some(7), &[]), "row 7");
+    assert_eq!(spot(Some(7), &[0.5, 1.0]), "row 7 (0.5000, 1.0000)");
+    assert_eq!(spot(None, &[0.5]), "(0.5000)");
+}
+
+/// A feature of so many spacings, drawn with more points and otherwise the same.
+fn denser(feature: &str, few: &Drawing, count: usize) -> PointCloud<f64> {
+    let size = few.size * (count as f64 / few.count as f64).sqrt();
+    let drawing = Drawing {
+        count,
+        size,
+        ..*few
+    };
+    Feature::find(feature)
+        .unwrap()
+        .draw(&drawing)
+        .unwrap()
+        .points
+}
+
+#[test]
+fn sheets_that_are_one_in_the_mesh_are_told_and_more_points_keep_them_apart() {
+    let few = Drawing {
+        count: 450,
+        size: 1.6,
+        ratio: 1.0,
+        noise: 0.0,
+        seed: 1,
+    };
+    let cloud = Feature::find("parallel").unwrap().draw(&few).unwrap();
+    let coarse = Parameters {
+        surface: true,
+        models: vec![ModelName::Boundary],
+        ..Parameters::new(8.0 * cloud.spacing, 4.0 * cloud.spacing)
+    };
+    let refusal = refused(&cloud.points, coarse, FaultKind::Merged);
+    let Advice::MorePoints(count) = refusal.advice else {
+        panic!("{refusal}")
+    };
+    let many = denser("parallel", &few, count);
+    assert_eq!(verified(&many, Pinned::default()), [2, 0, 0]);
+}
+
+#[test]
+fn sheets_that_no_model_claims_are_claimed_where_there_are_more_points() {
+    let few = sample("two_spheres", 600);
+    let lengths = Auto::default().choose(Input::Points(&few)).unwrap();
+    let refusal = refused(&few, lengths.parameters, FaultKind::Unclaimed);
+    assert!(matches!(refusal.advice, Advice::Model), "{refusal}");
+    assert!(refusal.advice.to_string().contains("sample more densely"));
+    let more = sample("two_spheres", 1500);
+    assert_eq!(verified(&more, Pinned::default()), [1, 0, 3]);
+}
+
+/// A hole that chance explains: closed where landmarks are far apart, open where they are near to each other.
+#[test]
+fn two_readings_are_told_and_more_points_decide() {
+    let few = Drawing {
+        count: 1000,
+        size: 4.2,
+        ratio: 1.0,
+        noise: 0.0,
+        seed: 1,
+    };
+    let cloud = Feature::find("plate-hole").unwrap().draw(&few).unwrap();
+    let spacings = |eps: f64, dl: f64| auto(eps * cloud.spacing, dl * cloud.spacing);
+    // The first attempt sees next to nothing, and the others disagree.
+    let mut readings = [spacings(16.0, 14.0), spacings(5.0, 2.5), spacings(4.2, 2.1)].into_iter();
+    let rims = Limits {
+        shortest_boundary: 4,
+        ..Limits::default()
+    };
+    let search = Auto::default()
+        .search(Input::Points(&cloud.points), &mut |asked| {
+            let reading = readings.next().unwrap_or(asked);
+            Ok(Pipeline::new(reading)?.limits(rims.clone()))
+        })
+        .unwrap();
+    let refusal = search.into_verified(Some(&cloud.points)).unwrap_err();
+    assert_eq!(refusal.faults[0].kind, FaultKind::TwoReadings, "{refusal}");
+    let Advice::MorePoints(count) = refusal.advice else {
+        panic!("{refusal}")
+    };
+    assert_eq!(count, 3 * few.count);
+    let many = denser("plate-hole", &few, count);
+    assert_eq!(verified(&many, Pinned::default()), [1, 1, 0]);
 }

@@ -112,6 +112,9 @@ pub enum ViolationKind {
     MergedSheets,
     /// Vertices off the points of a sheet at them.
     VertexOffPoints,
+    /// Two parts of the mesh that no edge joins, and whose points are as near to each other as points of one sheet: they may have a point
+    /// or a curve in common.
+    TouchingParts,
     /// A triangle with an angle of nearly zero.
     NeedleTriangle,
 }
@@ -130,7 +133,9 @@ impl ViolationKind {
             ZeroArea | Fold | BareFold | CurveFold | Stacked | SelfIntersection | NearCrossing
             | Entangled => Level::Geometry,
             UncoveredPoints | MeshFarFromPoints | MeshOffPoints | UnusedLandmarks => Level::Cover,
-            BridgedGap | BareStretch | MergedSheets | VertexOffPoints => Level::Faithful,
+            BridgedGap | BareStretch | MergedSheets | VertexOffPoints | TouchingParts => {
+                Level::Faithful
+            }
             NeedleTriangle => Level::Quality,
         }
     }
@@ -173,6 +178,7 @@ impl ViolationKind {
             BareStretch => "edges of curves where the points leave a gap",
             MergedSheets => "vertices where two sheets of points are one in the mesh",
             VertexOffPoints => "vertices off the points around them",
+            TouchingParts => "places where parts of the mesh touch by their points",
             NeedleTriangle => "triangles with an angle of nearly zero",
         }
     }
@@ -245,6 +251,9 @@ impl ViolationKind {
                 "decrease dl and eps, so that the mesh leaves the gap open; or give more points of the curve"
             }
             MergedSheets => "decrease dl and eps below the distance of the sheets",
+            TouchingParts => {
+                "let all models compete (the parts may have a point or a curve in common), or give more points there"
+            }
             VertexOffPoints => "decrease dl or eps: the sheets bend within a neighborhood",
             UnusedLandmarks => "increase the triangulation radius, or decrease the noise",
         }

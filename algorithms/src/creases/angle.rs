@@ -23,10 +23,6 @@ pub(super) struct Meeting {
     pub(super) place: Vec<f64>,
     /// The angle between them, degrees: 180 where they continue each other.
     pub(super) angle: f64,
-    /// Distance of the points next to the place from the nearer sheet, that in the middle, unit of the data.
-    pub(super) beside: f64,
-    /// The same of the points that the sheets were fitted to, each from its own.
-    pub(super) usual: f64,
     /// By how much both sheets together turn within an edge of the mesh from the place, degrees.
     pub(super) bend: f64,
 }
@@ -35,69 +31,75 @@ impl Meeting {
     /// Where the sheets of two faces meet between two vertices, each of which is on one of them; `None` where points are too few.
     ///
     /// Each sheet is fitted to the points of its own face, from its own side: on a surface that bends they continue each other, up to what
-    /// a quadratic leaves of a bend. Points are those of the nearest vertex, and next to a crease some are on the other face: those
-    /// farther off than most count less.
+    /// a quadratic leaves of a bend. Points are those of the nearest vertex, and those of the vertices at a seam are on either face: the
+    /// angle is that of the sheets beyond them where there are enough, and of all points those farther off than most count less.
     pub(super) fn of(
         ground: &Ground<'_>,
         [v, w]: [u32; 2],
         face: &[Option<u32>],
+        at_seam: &[bool],
         walk: &mut Walk,
     ) -> Option<Self> {
-        let mut side = |vertex: u32| {
-            let own = face[vertex as usize];
-            let points = ground.about(vertex, |x| face[x as usize] == own, walk);
-            sheet(ground, &points, &mut walk.offset)
-        };
-        let [(one, own), (other, others)] = [side(v)?, side(w)?];
-        let sheets = [one, other];
-        let mut place = ground.mean(&[v, w]);
-        let start = place.clone();
+        let own = |vertex: u32| move |x: u32| face[x as usize] == face[vertex as usize];
+        let near = [v, w].map(|vertex| ground.about(vertex, own(vertex), walk));
+        let beyond = [v, w].map(|vertex| {
+            let counts = |x: u32| !at_seam[x as usize];
+            ground.about_counting(vertex, own(vertex), counts, walk)
+        });
+        let start = ground.mean(&[v, w]);
+        let offset = &mut walk.offset;
+        let few = |points: &Vec<f64>| points.len() < ground.limits.enough * start.len();
+        let meeting = Self::of_sheets(ground, &near, &start, offset)?;
+        if beyond.iter().any(few) {
+            return Some(meeting);
+        }
+        // A bend of a small radius has flat sheets beyond it, and turns beside the place: near the place no less must be a crease.
+        let far = Self::of_sheets(ground, &beyond, &start, offset)?;
+        let share = |m: &Self| m.bend / (180.0 - m.angle).max(f64::EPSILON);
+        let bend = share(&meeting).max(share(&far)) * (180.0 - far.angle);
+        Some(Self { bend, ..far })
+    }
+
+    /// Where the sheets through two sets of points meet, beginning at a place between them.
+    fn of_sheets(
+        ground: &Ground<'_>,
+        points: &[Vec<f64>; 2],
+        start: &[f64],
+        offset: &mut Vec<f64>,
+    ) -> Option<Self> {
+        let [one, other] = points;
+        let sheets = [sheet(ground, one, offset)?, sheet(ground, other, offset)?];
+        let mut place = start.to_vec();
         for _ in 0..STEPS {
-            sheets
-                .iter()
-                .for_each(|s| s.project(&mut place, &mut walk.offset));
+            sheets.iter().for_each(|s| s.project(&mut place, offset));
         }
         // Sheets that continue each other meet anywhere.
         let moved = start.iter().zip(&place).map(|(a, b)| (a - b).powi(2));
         if moved.sum::<f64>() > ground.edge.powi(2) {
-            place = start;
+            place = start.to_vec();
         }
-        let Wedge { angle, ways } = wedge(&sheets, &place, &mut walk.offset)?;
+        let Wedge { angle, ways } = wedge(&sheets, &place, offset)?;
         let bend = (sheets.iter().zip(ways.iter().flatten()))
-            .map(|(sheet, way)| turn(sheet, &place, way, ground.edge, &mut walk.offset))
+            .map(|(sheet, way)| turn(sheet, &place, way, ground.edge, offset))
             .sum();
-        let mut off = |x: &[f64]| {
-            let each = sheets
-                .iter()
-                .map(|s| s.distance(x, f64::INFINITY, &mut walk.offset));
-            each.fold(f64::INFINITY, f64::min)
-        };
-        let mut beside: Vec<f64> = (ground.own(v).chain(ground.own(w))).map(&mut off).collect();
-        Some(Self {
-            place,
-            angle,
-            beside: middle(&mut beside),
-            usual: own.max(others),
-            bend,
-        })
+        Some(Self { place, angle, bend })
     }
 }
 
 /// The value in the middle, 0 for none.
-pub(super) fn middle(values: &mut [f64]) -> f64 {
+fn middle(values: &mut [f64]) -> f64 {
     match values.len() {
         0 => 0.0,
         count => *values.select_nth_unstable_by(count / 2, f64::total_cmp).1,
     }
 }
 
-/// A sheet through most of the points, and how far from it the one in the middle is.
-fn sheet(ground: &Ground<'_>, points: &[f64], offset: &mut Vec<f64>) -> Option<(SheetFit, f64)> {
+/// A sheet through most of the points.
+fn sheet(ground: &Ground<'_>, points: &[f64], offset: &mut Vec<f64>) -> Option<SheetFit> {
     let dimension = ground.mesh.vertices.dimension();
     let count = points.len() / dimension;
     let mut weights = vec![1.0; count];
     let mut fit = SheetFit::new(dimension);
-    let mut usual = 0.0;
     for _ in 0..=ROUNDS {
         if !fit.fit(points, &weights) {
             return None;
@@ -105,14 +107,13 @@ fn sheet(ground: &Ground<'_>, points: &[f64], offset: &mut Vec<f64>) -> Option<(
         let off: Vec<f64> = (points.chunks_exact(dimension))
             .map(|x| fit.distance(x, f64::INFINITY, offset))
             .collect();
-        usual = middle(&mut off.clone());
-        let far = FAR * usual + EXACT * ground.edge;
+        let far = FAR * middle(&mut off.clone()) + EXACT * ground.edge;
         for (weight, off) in weights.iter_mut().zip(&off) {
             let share = off / far;
             *weight = 1.0 / (1.0 + share * share).powi(2);
         }
     }
-    Some((fit, usual))
+    Some(fit)
 }
 
 /// By how much a sheet turns on the way from a place, degrees: a bend of a small radius turns as much beside the place as there.

@@ -126,13 +126,24 @@ impl<'a> Ground<'a> {
         admits: impl Fn(u32) -> bool,
         walk: &mut Walk,
     ) -> Vec<f64> {
+        self.about_counting(vertex, admits, |_| true, walk)
+    }
+
+    /// The same of those vertices alone that count, in as many layers of all that are admitted.
+    pub(super) fn about_counting(
+        &self,
+        vertex: u32,
+        admits: impl Fn(u32) -> bool,
+        counts: impl Fn(u32) -> bool,
+        walk: &mut Walk,
+    ) -> Vec<f64> {
         walk.round += 1;
         walk.found.clear();
         walk.layer.clear();
         walk.layer.push(vertex);
         walk.seen[vertex as usize] = walk.round;
         for layer in 0..=self.limits.layers {
-            for &v in &walk.layer {
+            for &v in walk.layer.iter().filter(|&&v| counts(v)) {
                 let range = self.own_starts[v as usize]..self.own_starts[v as usize + 1];
                 walk.found
                     .extend(&self.own[range.start as usize..range.end as usize]);

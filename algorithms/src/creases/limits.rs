@@ -25,11 +25,6 @@ pub struct CreaseLimits {
     pub bends: f64,
     /// Least share of the places along a seam that have such an angle.
     pub share: f64,
-    /// At a crease the points next to it are on the sheets of its sides: the one in the middle is off the nearer of them at most this many
-    /// times what points elsewhere are off theirs, and `inside` median edges more. At a bend they are inside.
-    pub rounded: f64,
-    /// What they may be off anyway, in median edges of the mesh: see [`rounded`](Self::rounded).
-    pub inside: f64,
     /// A seam between corners that is no longer than this, in median edges of the mesh, is part of a corner.
     pub contact: f64,
     /// Fewest places of a crease.
@@ -52,8 +47,6 @@ impl CreaseLimits {
         widest: 160.0,
         bends: 2.0,
         share: 0.6,
-        rounded: 2.0,
-        inside: 0.02,
         contact: 1.6,
         places: 4,
         seeds: 3,

@@ -1,6 +1,6 @@
 //! Seams: where two faces meet, edge by edge of the mesh.
 
-use super::angle::{Meeting, middle};
+use super::angle::Meeting;
 use super::corners::Corners;
 use super::faces::Faces;
 use super::ground::Ground;
@@ -39,12 +39,16 @@ impl<'g, 'a> Seams<'g, 'a> {
         let parted: Vec<[u32; 2]> = (ground.edges.iter().copied())
             .filter(|&e| faces.parted(e).is_some())
             .collect();
+        let mut at_seam = vec![false; faces.of.len()];
+        for &v in parted.iter().flatten() {
+            at_seam[v as usize] = true;
+        }
         let meetings = execute::map_blocks(
             execute,
             EDGES_AT_ONCE,
             parted.len(),
             || ground.walk(),
-            |walk, k| Meeting::of(ground, parted[k], &faces.of, walk),
+            |walk, k| Meeting::of(ground, parted[k], &faces.of, &at_seam, walk),
         );
         let seam = |Trail { edges, ends }| {
             let between = |&k: &u32| ground.mean(&parted[k as usize]);
@@ -83,20 +87,7 @@ impl<'g, 'a> Seams<'g, 'a> {
         let sharp =
             |m: &&Meeting| m.angle <= limits.widest && 180.0 - m.angle >= limits.bends * m.bend;
         let sharp = seam.meetings.iter().filter(sharp).count() as f64;
-        seam.edges >= limits.places
-            && sharp >= limits.share * seam.edges as f64
-            && !self.is_rounded(seam)
-    }
-
-    /// Whether the points next to a seam are on neither of the sheets: a bend of a small radius, which the sheets on its sides do not
-    /// follow.
-    fn is_rounded(&self, seam: &Seam) -> bool {
-        let of = |which: fn(&Meeting) -> f64| {
-            let mut all: Vec<f64> = seam.meetings.iter().map(which).collect();
-            middle(&mut all)
-        };
-        let limits = self.ground.limits;
-        of(|m| m.beside) > limits.rounded * of(|m| m.usual) + limits.inside * self.ground.edge
+        seam.edges >= limits.places && sharp >= limits.share * seam.edges as f64
     }
 
     /// The seams, none of which is smooth, as creases with the corners in which they end.

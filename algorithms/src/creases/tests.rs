@@ -66,9 +66,8 @@ proptest! {
         prop_assert_eq!((all.faces, all.creases.len(), all.corners.len()), (2, 1, 0));
         let crease = &all.creases[0];
         prop_assert_eq!(crease.ends, Some([CreaseEnd::Boundary; 2]));
-        // Points next to a sharp wedge are nearest to vertices of either face.
-        let within = if angle < 45.0 { 5.0 } else { 2.0 };
-        prop_assert!((crease.angle.median - angle).abs() < within, "{:?} {angle}", crease.angle);
+        // At the rim of the cloud, where few points hold the sheets, the angle is less exact.
+        prop_assert!((crease.angle.median - angle).abs() < 0.1, "{:?} {angle}", crease.angle);
         // At the rim of the cloud few points hold the sheets.
         let near = crease.places.iter().filter(|place| place[0].hypot(place[2]) < 0.5).count();
         prop_assert!(10 * near >= 8 * crease.places.len(), "{:?}", crease.places);
@@ -76,7 +75,7 @@ proptest! {
         let moved = Mesh { vertices: embed(&mesh.vertices, 5, seed).unwrap(), ..mesh.clone() };
         let again = found(&moved, &embed(&cloud, 5, seed).unwrap());
         prop_assert_eq!((again.faces, again.creases.len(), again.corners.len()), (2, 1, 0));
-        prop_assert!((again.creases[0].angle.median - crease.angle.median).abs() < within);
+        prop_assert!((again.creases[0].angle.median - crease.angle.median).abs() < 0.1);
     }
 }
 

@@ -21,8 +21,9 @@
 //! **What is exact.** Membership: that of `squared_distance(a, b).sqrt()`, rounded to the scalar of
 //! the cloud, `< eps`; a filter in single precision decides where it provably can, the original
 //! coordinates everywhere else. The dimension: that of
-//! [`PrincipalComponents`](crate::dimension::PrincipalComponents), except where a tail share
-//! equals the tolerance within rounding. In more than six dimensions balls are summed
+//! [`PrincipalComponents`](crate::dimension::PrincipalComponents), asked for the ball by itself. Where a tail share
+//! equals the tolerance within 1e-9, the points of the ball are summed in the order of their rows, as it does; so the
+//! answer is the same, to the bit, in any part of the cloud that holds the ball. In more than six dimensions balls are summed
 //! in six directions and the rest is only bounded; where the bound leaves the answer open, the
 //! full spectrum is computed. A covariance that would lose more than 1e-10 of its trace to
 //! cancellation (points that nearly coincide, in a cloud that is wide) is summed again from the

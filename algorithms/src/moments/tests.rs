@@ -17,16 +17,10 @@ fn scan<S: Scalar>(cloud: &PointCloud<S>, center: usize, eps: f64) -> Vec<usize>
     (0..cloud.len()).filter(inside).collect()
 }
 
-/// The dimension by its definition, and whether rounding may change it.
-fn naive<S: Scalar>(cloud: &PointCloud<S>, rows: &[usize], dt: f64) -> (u32, bool) {
+/// The dimension by its definition.
+fn naive<S: Scalar>(cloud: &PointCloud<S>, rows: &[usize], dt: f64) -> u32 {
     let variances = PrincipalFrame::of(cloud, rows.iter().copied()).variances;
-    let total: f64 = variances.iter().sum();
-    let mut tail = total;
-    let close = variances.iter().any(|v| {
-        tail -= v;
-        (tail / total - dt).abs() < 1e-9
-    });
-    (dimension_of(&variances, dt), close)
+    dimension_of(&variances, dt)
 }
 
 /// Counts and dimensions of all points, and moments of some, are those of the definition.
@@ -54,9 +48,9 @@ fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
         let at = format!("point {i} of {} in R^{n}, eps {eps}", cloud.len());
         assert_eq!(found[i].neighbors as usize, rows.len(), "{at}");
         assert_eq!(balls[i].count as usize, rows.len(), "{at}");
-        let (dimension, close) = naive(cloud, &rows, dt);
+        let dimension = naive(cloud, &rows, dt);
         assert!(
-            close || found[i].dimension == dimension || rows.len() == 1,
+            found[i].dimension == dimension || rows.len() == 1,
             "{at}: {} not {dimension}",
             found[i].dimension
         );
@@ -110,6 +104,47 @@ fn curved(n: usize, count: usize, seed: u64) -> Vec<f64> {
         }
     }
     rows
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// With a tolerance that is the share of a ball, or the next number, the whole cloud and a part that holds the ball say what the
+    /// ball says by itself.
+    #[test]
+    fn at_the_tolerance_a_ball_decides_alone(
+        n in 2_usize..=9, seed in any::<u64>(), center in 0_usize..160, few in 2_usize..9,
+    ) {
+        let cloud = PointCloud::new(n, curved(n, 160, seed)).unwrap();
+        let eps = 0.6;
+        let rows = scan(&cloud, center, eps);
+        let near = scan(&cloud, center, 1.1 * eps);
+        let part: Vec<usize> = (0..cloud.len())
+            .filter(|row| row % few == 0 || near.contains(row))
+            .collect();
+        let own = part.iter().position(|&row| row == center).unwrap();
+        let part = cloud.select(&part);
+        let variances = PrincipalFrame::of(&cloud, rows.iter().copied()).variances;
+        let total: f64 = variances.iter().sum();
+        let mut tail = total;
+        for v in variances.iter().take(3) {
+            tail -= v;
+            let share = tail / total;
+            for dt in [share, share.next_up(), share - 3e-10] {
+                if !(dt > 0.0 && dt < 1.0) {
+                    continue;
+                }
+                let expected = naive(&cloud, &rows, dt);
+                for (cloud, row) in [(&cloud, center), (&part, own)] {
+                    let tree = MomentTree::new(cloud).unwrap();
+                    for found in [tree.dimensions(eps, dt, &Serial), tree.settled_dimensions(eps, dt, &Serial)] {
+                        let found = &found.unwrap()[row];
+                        prop_assert!(rows.len() == 1 || found.dimension == expected, "{dt}: {} not {expected}", found.dimension);
+                    }
+                }
+            }
+        }
+    }
 }
 
 proptest! {
@@ -325,8 +360,7 @@ fn measure<S: Scalar>(name: &str, cloud: &PointCloud<S>, eps: f64) {
     println!("tree {built:.3} s, all {all:.3} s");
     for i in (0..cloud.len()).step_by(cloud.len() / 200) {
         let rows = scan(cloud, i, eps);
-        let (dimension, close) = naive(cloud, &rows, 0.05);
         assert_eq!(found[i].neighbors as usize, rows.len(), "point {i}");
-        assert!(close || found[i].dimension == dimension, "point {i}");
+        assert_eq!(found[i].dimension, naive(cloud, &rows, 0.05), "point {i}");
     }
 }

@@ -1,8 +1,8 @@
 //! Singularity models by name.
 
 use super::{
-    BareCurve, Book, BookEnd, Boundary, CurveOnSheet, CurveThroughSheet, IsolatedCrossing,
-    PinchPoint, TriplePoint, TwoPlanes, YJunction,
+    BareCurve, Book, BookEnd, Boundary, ConePoint, CurveOnSheet, CurveThroughSheet,
+    IsolatedCrossing, PinchPoint, TriplePoint, TwoPlanes, YJunction,
 };
 use crate::tuning::ModelTuning;
 use crosscap_core::{Error, SingularityModel};
@@ -45,6 +45,8 @@ pub enum ModelName {
     Book,
     /// [`BookEnd`].
     BookEnd,
+    /// [`ConePoint`].
+    ConePoint,
 }
 
 /// Rounds of the refinement by equation (5).
@@ -52,7 +54,7 @@ const REFINEMENT_ROUNDS: usize = 20;
 
 impl ModelName {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::TwoPlanes,
         Self::RefinedTwoPlanes,
         Self::Boundary,
@@ -65,10 +67,11 @@ impl ModelName {
         Self::PinchPoint,
         Self::Book,
         Self::BookEnd,
+        Self::ConePoint,
     ];
 
     /// Those that compete where the user leaves the choice to the program.
-    pub const AUTO: [Self; 11] = [
+    pub const AUTO: [Self; 12] = [
         Self::TwoPlanes,
         Self::Boundary,
         Self::YJunction,
@@ -80,6 +83,7 @@ impl ModelName {
         Self::PinchPoint,
         Self::Book,
         Self::BookEnd,
+        Self::ConePoint,
     ];
 
     /// The name on the command line and in reports.
@@ -97,6 +101,7 @@ impl ModelName {
             Self::PinchPoint => "pinch-point",
             Self::Book => "book",
             Self::BookEnd => "book-end",
+            Self::ConePoint => "cone-point",
         }
     }
 
@@ -141,6 +146,7 @@ impl ModelName {
             Self::PinchPoint => Box::new(PinchPoint::new(dp, ep)?.tuned(tuning.pinch_point)),
             Self::Book => Box::new(Book::new(dp, ep)?.tuned(tuning.book)),
             Self::BookEnd => Box::new(BookEnd::new(dp, ep)?.tuned(tuning.book_end)),
+            Self::ConePoint => Box::new(ConePoint::new(dp, ep)?.tuned(tuning.cone_point)),
         })
     }
 }

@@ -22,6 +22,7 @@
 
 mod books;
 mod catalogue;
+mod cayley;
 mod curves;
 mod faceted;
 mod features;

@@ -1,6 +1,7 @@
 //! Surfaces with every kind of singular curve and point: most of them flat pieces put together.
 
 use super::books::{DISCS, PAGES, book, plate_on_plate};
+use super::cayley::cayley;
 use super::curves::{circle, curve, path, straight};
 use super::flat::{axes, square};
 use super::surface::SampleSurface;
@@ -307,5 +308,6 @@ pub(super) fn singular_surfaces() -> Vec<SampleSurface> {
     ]);
     all.extend(boxes());
     all.extend(cones());
+    all.push(cayley());
     all
 }

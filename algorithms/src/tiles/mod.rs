@@ -12,8 +12,8 @@
 //! | the nearest point of a place | the halo; whoever is farther from all points is asked about again, by all tiles |
 //!
 //! A tile keeps nothing between questions, and whoever has the tiles is [`Tiles`]: this process ([`TilesInMemory`]), or workers that may
-//! die and be replaced. Curves are not in here: whether a ball is 2-dimensional is decided from sums over a tree of the
-//! whole cloud, whose last bits are those of the tree, and fits are made in an order that the mean of all candidates decides.
+//! die and be replaced. Curves are not in here: fits are made in an order that all candidates decide together, and curves are laid over all
+//! points on them. Whether a ball is 2-dimensional is a matter of the ball alone (`moments`).
 
 mod answer;
 mod cells;

@@ -106,6 +106,16 @@ pub trait Tiles {
     /// How far the points of every tile go beyond its box.
     fn halo(&self) -> f64;
 
+    /// The row of the input that a row of the cloud is: another number where copies were left out.
+    fn input_row(&self, row: CloudRow) -> usize {
+        row.index()
+    }
+
+    /// How many points of the input were left out, as they are at the place of another.
+    fn left_out(&self) -> usize {
+        0
+    }
+
     /// The answers of all tiles to a question, in any order that is the same at every call.
     ///
     /// # Errors

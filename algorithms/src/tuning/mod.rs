@@ -13,8 +13,8 @@ mod preparation;
 pub use ends::{BookEndTuning, BookTuning, CurveEndTuning, PinchPointTuning, RimTuning};
 pub use front::FrontTuning;
 pub use models::{
-    BoundaryTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning, TriplePointTuning,
-    TwoPlanesTuning, YJunctionTuning,
+    BoundaryTuning, ConePointTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning,
+    TriplePointTuning, TwoPlanesTuning, YJunctionTuning,
 };
 pub use pages::PagesTuning;
 

@@ -27,6 +27,8 @@ pub struct ModelTuning {
     pub book: BookTuning,
     /// A curve that ends where its sheets do.
     pub book_end: BookEndTuning,
+    /// A surface that is like the tip of a cone.
+    pub cone_point: ConePointTuning,
 }
 
 impl ModelTuning {
@@ -41,6 +43,7 @@ impl ModelTuning {
         pinch_point: PinchPointTuning::MEASURED,
         book: BookTuning::MEASURED,
         book_end: BookEndTuning::MEASURED,
+        cone_point: ConePointTuning::MEASURED,
     };
 }
 
@@ -240,5 +243,35 @@ impl CurveAndSheetTuning {
         steepest: 2.0,
         arc: 2,
         length: 3.0,
+    };
+}
+
+/// When the tip of a cone is believed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ConePointTuning {
+    /// Least eigenvalue of the quadratic form as a share of the greatest, in size: half angles from 13 to 77 degrees for round cones.
+    pub sharpness: f64,
+    /// The tip lies within this share of the radius.
+    pub reach: f64,
+    /// Greatest half width of a neck, or of a gap between two sheets, in spacings of the points: a neck of one spacing has six points
+    /// around. Measured at nodes of cubic and quartic surfaces, which the quadric follows to second order alone: up to 0.4.
+    pub neck: f64,
+    /// Greatest share of the points farther than ep from the cone.
+    pub astray: f64,
+    /// Greatest share of the residual of one quadratic patch that the fit may leave.
+    pub gain: f64,
+    /// Least share of the points on a half of the cone that is there.
+    pub half_share: f64,
+}
+
+impl ConePointTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        sharpness: 0.05,
+        reach: 0.7,
+        neck: 0.6,
+        astray: 0.03,
+        gain: 0.5,
+        half_share: 0.04,
     };
 }

@@ -3,6 +3,7 @@
 //! | what | read | write |
 //! | --- | --- | --- |
 //! | points | [`read_points`], [`read_point_file`] | [`write_points`] |
+//! | points, some at a time | [`PointRows`] | |
 //! | frames of a molecule | [`read_molecule`] | |
 //! | indices of points | [`read_indices`] | [`write_indices`] |
 //! | meshes | [`read_mesh`] | [`write_mesh`] |
@@ -38,6 +39,7 @@ mod off;
 mod pcd;
 mod ply;
 mod ply_reader;
+mod point_rows;
 mod points;
 mod remark;
 mod stl;
@@ -61,6 +63,7 @@ pub use mesh::{MESH_EXTENSIONS, MESH_READ_EXTENSIONS, read_mesh, write_mesh};
 pub use mesh_npz::NO_TRIANGLES;
 pub use mesh_parts::{MeshExtras, MeshFile};
 pub use molecule::{Molecule, read_molecule};
+pub use point_rows::PointRows;
 pub use points::{
     POINT_EXTENSIONS, PointFile, PointOptions, read_point_file, read_points, write_points,
 };

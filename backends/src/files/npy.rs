@@ -28,6 +28,16 @@ impl Numbers {
         }
     }
 
+    /// Takes others of the same type behind these; those of another type not.
+    pub(crate) fn extend(&mut self, others: Self) {
+        match (self, others) {
+            (Self::F32(all), Self::F32(more)) => all.extend(more),
+            (Self::F64(all), Self::F64(more)) => all.extend(more),
+            (Self::Integer(all), Self::Integer(more)) => all.extend(more),
+            _ => {}
+        }
+    }
+
     /// Some columns of rows that have `columns` of them.
     pub(crate) fn columns(&self, columns: usize, kept: &[usize]) -> Self {
         fn some<T: Copy>(v: &[T], columns: usize, kept: &[usize]) -> Vec<T> {

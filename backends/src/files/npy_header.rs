@@ -4,7 +4,7 @@ use super::error::{Flaw, Parsed, excerpt};
 
 /// Longest header that is believed; real ones have about 100 bytes, records with many fields some
 /// thousand.
-const LONGEST: usize = 1 << 16;
+pub(crate) const LONGEST: usize = 1 << 16;
 
 /// Deepest nesting of brackets: fields of records within records, and their shapes.
 const DEEPEST: usize = 8;

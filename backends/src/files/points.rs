@@ -201,7 +201,7 @@ fn from_places(array: Array, options: &PointOptions) -> Parsed<PointFile> {
     from_array(array, options)
 }
 
-fn from_array(array: Array, options: &PointOptions) -> Parsed<PointFile> {
+pub(crate) fn from_array(array: Array, options: &PointOptions) -> Parsed<PointFile> {
     let (mut rows, mut columns) = array.rows_columns()?;
     if array.numbers.len() == 0 {
         // Before anything is made for so many columns as the header promises.

@@ -287,6 +287,22 @@ pub fn crossing_in_four_dimensions(draw: &mut Draw) -> Instance {
     })
 }
 
+/// Both halves of an elliptic cone, or one of them, a little less wide than high to nearly twice as wide. The center is the tip. The strata of the truth are
+/// the halves.
+pub fn cone_point(draw: &mut Draw) -> Instance {
+    let wide = [0, 1].map(|_| draw.between(0.7, 1.8));
+    let both = draw.between(-1.0, 1.0) > 0.0;
+    let halves = if both { 2 } else { 1 };
+    pieces(draw, 3, halves, |k, [x, y]| {
+        let z = (x / wide[0]).hypot(y / wide[1]);
+        Placed {
+            point: vec![x, y, if k == 0 { z } else { -z }],
+            stratum: k as u8,
+            margin: z.min(x.hypot(y)),
+        }
+    })
+}
+
 /// A line that goes through a plane of space, within 30 degrees of its normal; a fifth of the points
 /// are on the line. The strata of the truth are the plane and the two halves of the line.
 pub fn line_through_plane(draw: &mut Draw) -> Instance {

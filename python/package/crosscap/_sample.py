@@ -6,7 +6,7 @@ from os import fspath
 
 import numpy as np
 
-from . import _crosscap
+from . import _crosscap, _stores
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,12 +90,15 @@ def surfaces():
 def read_points(path, *, array=None, transpose=False, columns=None):
     """Read points from a file, one point a row; the extension names the format.
 
+    Those of the command line, and ``.parquet`` and ``.h5`` (``.hdf5``) where pyarrow and h5py are installed
+    (``pip install crosscap[files]``).
+
     Parameters
     ----------
     path : str or path-like
         The file.
     array : str, optional
-        Which array of a ``.npz``, which variable of a ``.mat``.
+        Which array of a ``.npz``, which variable of a ``.mat``, which dataset of a ``.h5``.
     transpose : bool, default=False
         Whether the points are the columns.
     columns : str, optional
@@ -111,6 +114,8 @@ def read_points(path, *, array=None, transpose=False, columns=None):
     ------
     ValueError
         With file, line or row, what was found and what was expected.
+    ImportError
+        With the library that this format needs.
 
     Examples
     --------
@@ -120,6 +125,8 @@ def read_points(path, *, array=None, transpose=False, columns=None):
     >>> crosscap.read_points(path).shape
     (3, 3)
     """
+    if _stores.is_store(path):
+        return _stores.read(path, array=array, transpose=transpose, columns=columns)
     points, remarks = _crosscap.read_points(fspath(path), array, transpose, columns)
     for remark in remarks:
         warnings.warn(remark, stacklevel=2)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _crosscap
+from . import _crosscap, _stores
 
 # Rows of an array or a file that are read at a time.
 _ROWS_READ = 1_000_000
@@ -72,15 +72,25 @@ def _checked(shape, what):
 
 
 def _of_path(path):
-    files = sorted(path.glob("*.npy")) if path.is_dir() else [path]
+    kinds = (".npy", *_stores.SUFFIXES)
+    files = [path]
+    if path.is_dir():
+        files = sorted(file for file in path.iterdir() if file.suffix.lower() in kinds)
     if not files:
-        raise ValueError(f"{path}: found no .npy file, expected chunks of points, in the order of their names")
+        raise ValueError(
+            f"{path}: found no {' or '.join(kinds)} file, expected chunks of points, in the order of their names"
+        )
     chunks, widths = [], set()
     for file in files:
-        shape = np.load(file, mmap_mode="r").shape
-        _checked(shape, file)
-        widths.add(shape[1])
-        chunks += _sliced(shape[0], _read_file, (str(file),))
+        if _stores.is_store(file):
+            pieces, width = _stores.parts(file)
+            chunks += [Chunk(*piece) for piece in pieces]
+        else:
+            shape = np.load(file, mmap_mode="r").shape
+            _checked(shape, file)
+            width = shape[1]
+            chunks += _sliced(shape[0], _read_file, (str(file),))
+        widths.add(width)
     if len(widths) > 1:
         raise ValueError(f"{path}: found rows of {sorted(widths)} coordinates, expected one number")
     return Cloud(chunks, widths.pop())

@@ -39,8 +39,8 @@ def reconstruct(
     Parameters
     ----------
     points : dask array, path, memmap or array of shape (n_points, n_dimensions)
-        The points: an array of Dask, in chunks of rows; the path of an ``.npy`` file, or of a folder of them, chunks in the order of their
-        names, which all workers can read; a memory-mapped array, likewise. No two points at one place.
+        The points: an array of Dask, in chunks of rows; the path of an ``.npy``, ``.parquet`` or ``.h5`` file, or of a folder of them, chunks in
+        the order of their names, which all workers can read (pyarrow and h5py read the latter two); a memory-mapped array, likewise. No two points at one place.
     eps, dl, tri_eps, surface, random_state, on_refusal, verbose
         As in :class:`crosscap.SurfaceReconstruction`. Lengths have to be given, and ``surface`` has to be true: curves are
         not looked for in tiles.

@@ -90,6 +90,7 @@ impl Search<'_> {
             size: 2.0 * away.min(end),
             expected: found.points,
             p: 1.0,
+            together: 1,
             triangle,
             place: at(widest).to_vec(),
         };

@@ -72,6 +72,33 @@ pub(super) fn disc(points: f64, measure: f64) -> f64 {
     (2.0 * points * (1.0 + measure) * (-measure).exp()).min(1.0)
 }
 
+/// Discs that chance leaves in the mean, above which a few more say nothing.
+const EXPECTED: f64 = 20.0;
+
+/// Probability that at least `count` empty discs of `points` points that lie apart have as large a `measure` each, twice, as
+/// chains are tried beside discs.
+///
+/// Far apart, large empty discs are rare events, whose number is that of a Poisson law with the mean n (1 + t) exp(-t).
+pub(super) fn discs(points: f64, measure: f64, count: usize) -> f64 {
+    let mean = points * (1.0 + measure) * (-measure).exp();
+    if mean > EXPECTED {
+        return 1.0;
+    }
+    // The terms from `count` on, without the loss of digits of one less those before.
+    let mut term = (-mean).exp();
+    for k in 1..=count {
+        term *= mean / k as f64;
+    }
+    let mut sum = 0.0;
+    let mut k = count;
+    while sum + term > sum {
+        sum += term;
+        k += 1;
+        term *= mean / k as f64;
+    }
+    (2.0 * sum).min(1.0)
+}
+
 /// The measure that is as unlikely at a known density as `measure` is at a density that was
 /// counted from `counted` points: (1 + x / m)^-m stands for exp(-x).
 pub(super) fn known(measure: f64, counted: f64) -> f64 {
@@ -93,6 +120,18 @@ mod tests {
         assert!(disc(5000.0, t(5.0)) < 1e-3 && disc(5000.0, t(4.7)) > 1e-3);
         assert!(known(20.0, 60.0) < 20.0 && (known(20.0, 1e9) - 20.0).abs() < 1e-5);
         assert_eq!(known(20.0, 0.0), 0.0);
+    }
+
+    #[test]
+    fn several_discs_are_less_likely_than_one() {
+        let one = discs(600.0, 12.0, 1);
+        assert!((one / disc(600.0, 12.0) - 1.0).abs() < 0.1, "{one}");
+        let three = discs(600.0, 12.0, 3);
+        let mean = 600.0_f64 * 13.0 * (-12.0_f64).exp();
+        let first = 2.0 * mean.powi(3) / 6.0;
+        assert!(three < first && three > 0.9 * first, "{three} {first}");
+        assert_eq!(discs(1e3, 0.1, 3), 1.0);
+        assert_eq!(discs(1e6, 1e3, 3), 0.0);
     }
 
     #[test]

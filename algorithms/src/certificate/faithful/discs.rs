@@ -30,8 +30,11 @@ pub struct Gap {
     pub size: f64,
     /// Number of points expected in it, at the density around.
     pub expected: f64,
-    /// Probability that chance leaves such a gap anywhere in a sample like this one.
+    /// Probability that chance leaves such a gap anywhere in a sample like this one; with others, so many gaps of this
+    /// size and larger.
     pub p: f64,
+    /// Number of gaps that `p` is about: one, or several that are no chance together.
+    pub together: usize,
     /// Triangle of its middle.
     pub triangle: u32,
     /// Its middle.
@@ -47,6 +50,13 @@ pub(super) struct Empty {
     pub away: f64,
     /// Number of points expected on it.
     pub measure: f64,
+}
+
+/// The tile that is farthest from the points, of those that `counts` holds for.
+pub(super) fn widest_of(tiles: &[Empty], counts: impl Fn(usize) -> bool) -> Option<usize> {
+    (0..tiles.len())
+        .filter(|&k| counts(k))
+        .max_by(|&a, &b| tiles[a].away.total_cmp(&tiles[b].away).then(b.cmp(&a)))
 }
 
 impl Search<'_> {
@@ -117,28 +127,31 @@ impl Search<'_> {
 
     /// The largest empty disc.
     pub(super) fn widest(&self, tiles: &[Empty], middles: &[f64]) -> Option<Gap> {
+        let k = widest_of(tiles, |_| true)?;
+        let (gap, measure) = self.disc(tiles, middles, k);
+        let p = chance::disc(self.points() as f64, measure);
+        Some(Gap { p, ..gap })
+    }
+
+    /// The empty disc about tile `k` as a gap whose probability is left to the caller, and its measure at a known density.
+    pub(super) fn disc(&self, tiles: &[Empty], middles: &[f64], k: usize) -> (Gap, f64) {
         let width = self.mesh.vertices.dimension();
-        let (k, tile) = tiles
-            .iter()
-            .enumerate()
-            .max_by(|a, b| a.1.away.total_cmp(&b.1.away).then(b.0.cmp(&a.0)))?;
-        let place = &middles[k * width..(k + 1) * width];
+        let (tile, place) = (&tiles[k], &middles[k * width..(k + 1) * width]);
         let (away, end) = self.distances(place);
         let away = away.min(end);
         let inside = |p: &[f64]| squared_distance(p, place) < away * away;
         let found = self.expected_about(tile.triangle, place, away, away / tile.away, &inside);
-        let p = chance::disc(
-            self.points() as f64,
-            chance::known(self.even.random(found.points), found.counted),
-        );
-        Some(Gap {
+        let gap = Gap {
             width: 2.0 * away * found.density.sqrt(),
             size: 2.0 * away,
             expected: found.points,
-            p,
+            p: 1.0,
+            together: 1,
             triangle: tile.triangle,
             place: place.to_vec(),
-        })
+        };
+        let measure = chance::known(self.even.random(found.points), found.counted);
+        (gap, measure)
     }
 
     /// What is expected in the disc of radius `away` about a place.

@@ -13,6 +13,8 @@ impl Search<'_> {
         let mut gaps: Vec<Gap> = self.widest(&tiles, &middles).into_iter().collect();
         gaps.extend(self.overhang());
         self.chains(&tiles, &middles, &mut gaps);
+        let several = self.several(&tiles, &middles);
+        gaps.extend(several.into_iter().filter(|gap| gap.p < level));
         gaps.sort_by(|a, b| a.p.total_cmp(&b.p).then(b.expected.total_cmp(&a.expected)));
         let shown = gaps.iter().filter(|g| g.p < level).count().max(1);
         gaps.truncate(shown);

@@ -17,9 +17,11 @@ pub(super) mod ground;
 mod nearby;
 pub(super) mod opening;
 mod overlay;
+mod parts;
 mod patch;
 mod rim;
 mod search;
+mod several;
 mod sheets;
 mod slope;
 mod standing;
@@ -96,9 +98,20 @@ pub(super) fn check(
         significance,
         ..FaithfulReport::default()
     };
-    let gaps = search.run(significance);
-    report.largest_gap = gaps.first().cloned();
-    let bridged: Vec<&Gap> = gaps.iter().filter(|g| g.p < significance).collect();
+    gaps_told(search.run(significance), &mut report);
+    let stretches = arcs::stretches(search.mesh, search.incidence, search.feet);
+    stretches_told(stretches, &mut report);
+    if let Some(points) = options.points {
+        let found = sheets::look(search, points, significance, options.limits.vertex_offset);
+        sheets_told(search.mesh, found, &mut report);
+        parts_told(search.mesh, &parts::touching(search, points), &mut report);
+    }
+    report
+}
+
+/// Regions without points that the mesh covers, as a figure and a violation.
+fn gaps_told(gaps: Vec<Gap>, report: &mut FaithfulReport) {
+    let bridged: Vec<&Gap> = gaps.iter().filter(|g| g.p < report.significance).collect();
     for gap in &bridged {
         report.needs(gap.size / RESOLVED);
     }
@@ -107,25 +120,31 @@ pub(super) fn check(
         triangles.sort_unstable();
         triangles.dedup();
         let places = triangles.into_iter().map(Place::Triangle).collect();
-        let detail = format!(
-            "the largest is {:.1} spacings wide, {:.0} points are expected in it, p = {:.1e}; with dl = {:.3} it would stay open",
-            worst.width,
-            worst.expected,
-            worst.p,
-            worst.size / RESOLVED
-        );
+        let detail = if worst.together > 1 {
+            let narrowest = |size: f64, gap: &&Gap| size.min(gap.size);
+            let size = bridged.iter().fold(f64::INFINITY, narrowest);
+            format!(
+                "{} are no chance together, the largest is {:.1} spacings wide, p = {:.1e}; with dl = {:.3} they would stay open",
+                worst.together,
+                worst.width,
+                worst.p,
+                size / RESOLVED
+            )
+        } else {
+            format!(
+                "the largest is {:.1} spacings wide, {:.0} points are expected in it, p = {:.1e}; with dl = {:.3} it would stay open",
+                worst.width,
+                worst.expected,
+                worst.p,
+                worst.size / RESOLVED
+            )
+        };
         let violation = Violation::at(ViolationKind::BridgedGap, places, |_| worst.place.clone());
         report
             .violations
-            .extend(violation.map(|v| v.measured(worst.p, significance).detailed(detail)));
+            .extend(violation.map(|v| v.measured(worst.p, report.significance).detailed(detail)));
     }
-    let stretches = arcs::stretches(search.mesh, search.incidence, search.feet);
-    stretches_told(stretches, &mut report);
-    if let Some(points) = options.points {
-        let found = sheets::look(search, points, significance, options.limits.vertex_offset);
-        sheets_told(search.mesh, found, &mut report);
-    }
-    report
+    report.largest_gap = gaps.into_iter().next();
 }
 
 /// Stretches of curves without points, as a figure and a violation.
@@ -189,6 +208,21 @@ fn sheets_told(mesh: &Mesh, found: sheets::Found, report: &mut FaithfulReport) {
     }
     report.merged = found.merged.into_iter().next();
     report.offset = found.off.into_iter().next();
+}
+
+/// Places where parts of the mesh touch, as a violation.
+fn parts_told(mesh: &Mesh, touches: &[parts::Touch], report: &mut FaithfulReport) {
+    let Some(nearest) = touches.first() else {
+        return;
+    };
+    let places = touches.iter().map(|t| Place::Vertex(t.vertex)).collect();
+    let detail = format!("{:.2} spacings apart", nearest.apart);
+    let violation = Violation::at(ViolationKind::TouchingParts, places, |place| {
+        super::coordinates(mesh, place)
+    });
+    report
+        .violations
+        .extend(violation.map(|v| v.detailed(detail)));
 }
 
 fn spacings(ground: &Ground) -> [f64; 3] {

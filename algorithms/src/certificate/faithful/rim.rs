@@ -96,6 +96,7 @@ impl Search<'_> {
             size: 2.0 * end.away,
             expected: found.points,
             p: chance::disc(length.max(1.0), measure),
+            together: 1,
             triangle: end.triangle,
             place: end.place.clone(),
         }

@@ -35,16 +35,14 @@ impl<S: Scalar, const L: usize, const M: usize> Sweep<'_, S, L, M> {
             return self.naive(dt);
         }
         let products = &self.sum[..length];
-        if M <= 3 {
-            return decide::small(products, M, dt);
-        }
-        if let Some(dimension) = decide::compressed(products, M, rest, dt) {
-            return dimension;
-        }
-        if self.full() {
-            self.spectrum(dt)
+        let found = if M <= 3 {
+            decide::sure(dt, |dt| decide::small(products, M, dt))
         } else {
-            self.naive(dt)
+            decide::compressed(products, M, rest, dt).or_else(|| self.spectrum(dt))
+        };
+        match found {
+            Some(dimension) => dimension,
+            None => self.naive(dt),
         }
     }
 
@@ -124,14 +122,18 @@ impl<S: Scalar, const L: usize, const M: usize> Sweep<'_, S, L, M> {
         self.parts.count == 1 || self.accurate(trace, second_moment)
     }
 
-    /// The dimension from all eigenvalues of the covariance that `full` left.
-    pub(super) fn spectrum(&mut self, dt: f64) -> u32 {
+    /// The dimension from all eigenvalues, where they are accurate and sure.
+    #[cold]
+    fn spectrum(&mut self, dt: f64) -> Option<u32> {
+        if !self.full() {
+            return None;
+        }
         let n = self.n;
         packed::unfold(&self.full_products, n, &mut self.dense);
         let mut values =
             nalgebra::DMatrix::from_row_slice(n, n, &self.dense).symmetric_eigenvalues();
         values.as_mut_slice().sort_by(|a, b| b.total_cmp(a));
-        decide::dimension_of(values.as_slice(), dt)
+        decide::sure(dt, |dt| decide::dimension_of(values.as_slice(), dt))
     }
 
     /// The rows of the ball, from first to last.
@@ -172,7 +174,7 @@ impl<S: Scalar, const L: usize, const M: usize> Sweep<'_, S, L, M> {
         self.rows.sort_unstable();
     }
 
-    /// The dimension by its definition.
+    /// The dimension by its definition: a matter of the ball alone.
     #[cold]
     pub(super) fn naive(&mut self, dt: f64) -> u32 {
         self.collect();

@@ -1,0 +1,54 @@
+//! Several empty discs that are none of them unlikely, and are no chance together.
+
+use super::chance;
+use super::discs::{Empty, Gap, widest_of};
+use super::search::Search;
+use crosscap_core::squared_distance;
+
+/// Discs that are looked at together, at most: what is more holes than this has a wide one or a chain among them.
+const SEVERAL: usize = 5;
+
+impl Search<'_> {
+    /// The largest empty discs that lie apart, as many of them as are least likely together.
+    ///
+    /// The k-th largest measure of k discs is compared with the number of discs that chance leaves above it
+    /// ([`chance::discs`]); every k from two on counts as tried.
+    pub(super) fn several(&self, tiles: &[Empty], middles: &[f64]) -> Vec<Gap> {
+        let mut found = self.largest_apart(tiles, middles);
+        found.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let points = self.points() as f64;
+        let tried = (SEVERAL - 1) as f64;
+        let together = |k: usize| (tried * chance::discs(points, found[k - 1].1, k)).min(1.0);
+        let least = (2..=found.len())
+            .map(|k| (k, together(k)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((count, p)) = least else {
+            return Vec::new();
+        };
+        found.truncate(count);
+        let told = |(gap, _)| Gap {
+            p,
+            together: count,
+            ..gap
+        };
+        found.into_iter().map(told).collect()
+    }
+
+    /// The largest empty discs, each with its middle outside twice the others, and their measures.
+    fn largest_apart(&self, tiles: &[Empty], middles: &[f64]) -> Vec<(Gap, f64)> {
+        let width = self.mesh.vertices.dimension();
+        let at = |k: usize| &middles[k * width..(k + 1) * width];
+        let mut found: Vec<(Gap, f64)> = Vec::new();
+        while found.len() < SEVERAL {
+            let apart = |k: usize| {
+                let near = |gap: &Gap| squared_distance(at(k), &gap.place) < gap.size * gap.size;
+                !found.iter().any(|(gap, _)| near(gap))
+            };
+            let Some(k) = widest_of(tiles, apart) else {
+                break;
+            };
+            found.push(self.disc(tiles, middles, k));
+        }
+        found
+    }
+}
