@@ -53,7 +53,7 @@ impl Meeting {
         if beyond.iter().any(few) {
             return Some(meeting);
         }
-        // A bend of a small radius has flat sheets beyond it, and turns beside the place: near the place no less must be a crease.
+        // A bend of a small radius has flat sheets beyond it: it is told by how the sheets turn next to the place.
         let far = Self::of_sheets(ground, &beyond, &start, offset)?;
         let share = |m: &Self| m.bend / (180.0 - m.angle).max(f64::EPSILON);
         let bend = share(&meeting).max(share(&far)) * (180.0 - far.angle);

@@ -52,13 +52,6 @@ pub(super) struct Empty {
     pub measure: f64,
 }
 
-/// The tile that is farthest from the points, of those that `counts` holds for.
-pub(super) fn widest_of(tiles: &[Empty], counts: impl Fn(usize) -> bool) -> Option<usize> {
-    (0..tiles.len())
-        .filter(|&k| counts(k))
-        .max_by(|&a, &b| tiles[a].away.total_cmp(&tiles[b].away).then(b.cmp(&a)))
-}
-
 impl Search<'_> {
     /// Radius of the level from which on chains are looked for.
     pub(super) fn least_level(&self) -> f64 {
@@ -123,14 +116,6 @@ impl Search<'_> {
             });
         }
         (tiles, middles)
-    }
-
-    /// The largest empty disc.
-    pub(super) fn widest(&self, tiles: &[Empty], middles: &[f64]) -> Option<Gap> {
-        let k = widest_of(tiles, |_| true)?;
-        let (gap, measure) = self.disc(tiles, middles, k);
-        let p = chance::disc(self.points() as f64, measure);
-        Some(Gap { p, ..gap })
     }
 
     /// The empty disc about tile `k` as a gap whose probability is left to the caller, and its measure at a known density.

@@ -10,11 +10,9 @@ impl Search<'_> {
             return Vec::new();
         }
         let (tiles, middles) = self.far_tiles();
-        let mut gaps: Vec<Gap> = self.widest(&tiles, &middles).into_iter().collect();
+        let mut gaps = self.empty_discs(&tiles, &middles, level);
         gaps.extend(self.overhang());
         self.chains(&tiles, &middles, &mut gaps);
-        let several = self.several(&tiles, &middles);
-        gaps.extend(several.into_iter().filter(|gap| gap.p < level));
         gaps.sort_by(|a, b| a.p.total_cmp(&b.p).then(b.expected.total_cmp(&a.expected)));
         let shown = gaps.iter().filter(|g| g.p < level).count().max(1);
         gaps.truncate(shown);

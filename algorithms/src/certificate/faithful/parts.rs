@@ -5,7 +5,7 @@ use crate::balls::BallTree;
 use crosscap_core::{Complex, PointCloud, squared_distance};
 
 /// Distance in spacings from which on two parts are apart. The nearest two points of two round cones that meet in their apexes are less than
-/// that apart in 95 of 100 samples; sheets that the program tells apart are five apart and more.
+/// that apart in 92 of 100 samples and more; parts that the program tells apart are about three apart and more.
 const APART: f64 = 1.5;
 
 /// A place where the points of two parts are no farther from each other than points of one sheet.

@@ -1,20 +1,32 @@
-//! Several empty discs that are none of them unlikely, and are no chance together.
+//! The largest empty disc, and several that are none of them unlikely but no chance together.
 
 use super::chance;
-use super::discs::{Empty, Gap, widest_of};
+use super::discs::{Empty, Gap};
 use super::search::Search;
 use crosscap_core::squared_distance;
 
-/// Discs that are looked at together, at most: what is more holes than this has a wide one or a chain among them.
+/// Discs that are looked at together, at most: each more of them is one more that counts as tried.
 const SEVERAL: usize = 5;
 
 impl Search<'_> {
-    /// The largest empty discs that lie apart, as many of them as are least likely together.
+    /// The largest empty disc, and those that lie apart from it, as many of them as are least likely together; the latter only
+    /// below `level`.
+    pub(super) fn empty_discs(&self, tiles: &[Empty], middles: &[f64], level: f64) -> Vec<Gap> {
+        let found = self.largest_apart(tiles, middles);
+        let widest = found.first().map(|(gap, measure)| Gap {
+            p: chance::disc(self.points() as f64, *measure),
+            ..gap.clone()
+        });
+        let mut gaps: Vec<Gap> = widest.into_iter().collect();
+        gaps.extend(self.together(found).into_iter().filter(|gap| gap.p < level));
+        gaps
+    }
+
+    /// As many discs as are least likely together.
     ///
     /// The k-th largest measure of k discs is compared with the number of discs that chance leaves above it
     /// ([`chance::discs`]); every k from two on counts as tried.
-    pub(super) fn several(&self, tiles: &[Empty], middles: &[f64]) -> Vec<Gap> {
-        let mut found = self.largest_apart(tiles, middles);
+    fn together(&self, mut found: Vec<(Gap, f64)>) -> Vec<Gap> {
         found.sort_by(|a, b| b.1.total_cmp(&a.1));
         let points = self.points() as f64;
         let tried = (SEVERAL - 1) as f64;
@@ -34,7 +46,7 @@ impl Search<'_> {
         found.into_iter().map(told).collect()
     }
 
-    /// The largest empty discs, each with its middle outside twice the others, and their measures.
+    /// The largest empty discs, widest first, each with its middle outside twice the others, and their measures.
     fn largest_apart(&self, tiles: &[Empty], middles: &[f64]) -> Vec<(Gap, f64)> {
         let width = self.mesh.vertices.dimension();
         let at = |k: usize| &middles[k * width..(k + 1) * width];
@@ -44,7 +56,11 @@ impl Search<'_> {
                 let near = |gap: &Gap| squared_distance(at(k), &gap.place) < gap.size * gap.size;
                 !found.iter().any(|(gap, _)| near(gap))
             };
-            let Some(k) = widest_of(tiles, apart) else {
+            let farthest = |&a: &usize, &b: &usize| {
+                let further = tiles[a].away.total_cmp(&tiles[b].away);
+                further.then(b.cmp(&a))
+            };
+            let Some(k) = (0..tiles.len()).filter(|&k| apart(k)).max_by(farthest) else {
                 break;
             };
             found.push(self.disc(tiles, middles, k));
