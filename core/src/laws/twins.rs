@@ -5,7 +5,11 @@ use super::{Failures, Law, LawBroken, Settings};
 /// Sources of the modules that state laws.
 const SOURCES: [&str; 10] = [
     include_str!("metric.rs"),
-    include_str!("neighborhood.rs"),
+    concat!(
+        include_str!("neighborhood/mod.rs"),
+        "mod tests {",
+        include_str!("neighborhood/tests.rs")
+    ),
     include_str!("dimension.rs"),
     concat!(
         include_str!("singularity/mod.rs"),
