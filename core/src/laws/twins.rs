@@ -10,7 +10,11 @@ const SOURCES: [&str; 10] = [
         "mod tests {",
         include_str!("neighborhood/tests.rs")
     ),
-    include_str!("dimension.rs"),
+    concat!(
+        include_str!("dimension/mod.rs"),
+        "mod tests {",
+        include_str!("dimension/tests.rs")
+    ),
     concat!(
         include_str!("singularity/mod.rs"),
         "mod tests {",
