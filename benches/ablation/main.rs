@@ -23,7 +23,7 @@ use numbers::NUMBERS;
 use std::error::Error;
 use std::fmt::Write;
 
-/// Clouds of as many points are the large ones.
+/// Clouds of at least as many points are the large ones.
 const LARGE: usize = 30_000;
 
 /// What failed of what succeeds with the numbers that the program has, in words.

@@ -141,7 +141,6 @@ pub const NUMBERS: &[Number] = numbers! {
     Length models.pinch_point.length out 0.0;
     Length models.pinch_point.sine out 0.0;
     Length models.book.end.astray out 1.0;
-    Length models.book.end.gain out 1.0;
     Length models.book.off_center out 1.0;
     Length models.book.share out 0.0;
     Length models.book.step;
