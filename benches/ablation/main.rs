@@ -7,6 +7,7 @@
 //! cargo bench --bench ablation -- --small            # the clouds of fewer than 30,000 points
 //! cargo bench --bench ablation -- --large            # the others
 //! cargo bench --bench ablation -- --out              # every number taken out only
+//! cargo bench --bench ablation -- --together         # as many numbers as possible taken out at the same time
 //! cargo bench --bench ablation -- shrink bridge      # the numbers whose name holds one of these words
 //! ```
 //!
@@ -16,12 +17,14 @@
 
 mod clouds;
 mod numbers;
+mod together;
 
 use clouds::Cloud;
 use crosscap_algorithms::stratify::Tuning;
-use numbers::NUMBERS;
+use numbers::{NUMBERS, Number};
 use std::error::Error;
 use std::fmt::Write;
+use together::Together;
 
 /// Clouds of at least as many points are the large ones.
 const LARGE: usize = 30_000;
@@ -55,6 +58,7 @@ struct Request {
     small: bool,
     large: bool,
     out: bool,
+    together: bool,
     words: Vec<String>,
 }
 
@@ -71,6 +75,7 @@ impl Request {
                 "--small" => request.small = true,
                 "--large" => request.large = true,
                 "--out" => request.out = true,
+                "--together" => request.together = true,
                 "--seeds" => {
                     request.seeds = words.next().ok_or("--seeds needs a number")?.parse()?;
                 }
@@ -111,12 +116,29 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (cloud, _) in clouds.iter().zip(&usual).filter(|(_, good)| !**good) {
         println!("not right as it is: {}", cloud.name);
     }
+    let asked = NUMBERS.iter().filter(|number| request.wants(number.name));
+    if request.together {
+        let right = clouds.iter().zip(&usual).filter(|(_, good)| **good);
+        together(right.map(|(cloud, _)| cloud).collect(), asked.collect());
+    } else {
+        one_by_one(&request, &clouds, &usual, asked);
+    }
+    Ok(())
+}
+
+/// Prints what is left of the clouds without each of some numbers, and with it halved and doubled.
+fn one_by_one<'a>(
+    request: &Request,
+    clouds: &[Cloud],
+    usual: &[bool],
+    asked: impl Iterator<Item = &'a Number>,
+) {
     println!("\n| number | value | taken out | half | double |\n| --- | ---: | --- | --- | --- |");
-    for number in NUMBERS.iter().filter(|number| request.wants(number.name)) {
+    for number in asked {
         if request.out && number.out.is_none() {
             continue;
         }
-        let with = |tuning: Tuning| told(&clouds, &usual, &tuning);
+        let with = |tuning: Tuning| told(clouds, usual, &tuning);
         let out = number
             .out
             .map_or("·".into(), |value| with(number.at(value)));
@@ -130,5 +152,25 @@ fn main() -> Result<(), Box<dyn Error>> {
             number.value()
         );
     }
-    Ok(())
+}
+
+/// Prints which of some numbers can be taken out at the same time.
+fn together(right: Vec<&Cloud>, asked: Vec<&Number>) {
+    let mut together = Together::new(right);
+    let can_go: Vec<&Number> = asked.into_iter().filter(|n| n.out.is_some()).collect();
+    together.take(&can_go);
+    let (out, stay) = (together.out(), &together.stay);
+    println!(
+        "\n{} of {} can be out at the same time ({} runs):",
+        out.len(),
+        out.len() + stay.len(),
+        together.runs
+    );
+    for number in out {
+        println!("- `{}`", number.name);
+    }
+    println!("\n| stays | lost without it |\n| --- | --- |");
+    for (number, cloud) in stay {
+        println!("| `{}` | {} |", number.name, cloud.name);
+    }
 }

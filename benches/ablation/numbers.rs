@@ -140,7 +140,7 @@ pub const NUMBERS: &[Number] = numbers! {
     Length models.pinch_point.fold out 0.0;
     Length models.pinch_point.length out 0.0;
     Length models.pinch_point.sine out 0.0;
-    Length models.book.end.astray out 1.0;
+    Length models.book.astray out 1.0;
     Length models.book.off_center out 1.0;
     Length models.book.share out 0.0;
     Length models.book.step;
@@ -213,10 +213,21 @@ impl Number {
     /// The tuning with the number replaced.
     pub fn at(&self, value: f64) -> Tuning {
         let mut tuning = Tuning::MEASURED;
-        match (self.place)(&mut tuning) {
+        self.set(&mut tuning, value);
+        tuning
+    }
+
+    /// Takes what the number does out of a tuning, if it can be.
+    pub fn take_out(&self, tuning: &mut Tuning) {
+        if let Some(value) = self.out {
+            self.set(tuning, value);
+        }
+    }
+
+    fn set(&self, tuning: &mut Tuning, value: f64) {
+        match (self.place)(tuning) {
             Place::Length(x) | Place::Factor(x) => *x = value,
             Place::Count(n) => *n = value.round() as usize,
         }
-        tuning
     }
 }

@@ -82,7 +82,7 @@ impl Book {
             };
             !known && aside.norm() <= tuning.off_center * radius
         })?;
-        let residual = book.residual(points, &self.tolerance, &tuning.end)?;
+        let residual = book.residual(points, &self.tolerance, tuning.astray)?;
         book.are_held(points, tuning.share)?;
         Ok(Fit {
             all,

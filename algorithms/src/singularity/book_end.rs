@@ -76,7 +76,7 @@ impl BookEnd {
     ) -> Result<Fit, Rejection> {
         let (points, radius, ep) = (&all[..local.fitted], local.radius, self.tolerance.ep);
         let (center, tuning) = (all[local.center], &self.tuning);
-        let residual = book.residual(points, &self.tolerance, &tuning.end)?;
+        let residual = book.residual(points, &self.tolerance, tuning.end.astray)?;
         curve_end::gains(residual, points, radius, &tuning.end)?;
         book.are_held(points, tuning.share)?;
         let meet = |x| {

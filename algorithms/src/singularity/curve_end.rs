@@ -24,9 +24,9 @@ pub(super) fn follows(
     off: impl ExactSizeIterator<Item = f64>,
     residual: f64,
     ep: f64,
-    tuning: &CurveEndTuning,
+    astray: f64,
 ) -> Result<(), Rejection> {
-    let most = tuning.astray * off.len() as f64;
+    let most = astray * off.len() as f64;
     match off.filter(|&d| d > ep).count() as f64 > most {
         true => Err(Rejection::PoorFit {
             residual,

@@ -6,7 +6,7 @@ use super::pages::Pages;
 use super::plane_pair::PlanePair;
 use super::sheets::Sheets;
 use super::tolerance::Tolerance;
-use crate::tuning::{CurveEndTuning, PagesTuning};
+use crate::tuning::PagesTuning;
 use crosscap_core::Rejection;
 use nalgebra::Vector3;
 
@@ -168,12 +168,12 @@ impl PageSheets {
         &self,
         points: &[Vector3<f64>],
         tolerance: &Tolerance,
-        tuning: &CurveEndTuning,
+        astray: f64,
     ) -> Result<f64, Rejection> {
         let off: Vec<f64> = points.iter().map(|x| self.off(x)).collect();
         let sum = off.iter().map(|d| d * d).sum();
         let residual = tolerance.residual(sum, points.len())?;
-        curve_end::follows(off.into_iter(), residual, tolerance.ep, tuning)?;
+        curve_end::follows(off.into_iter(), residual, tolerance.ep, astray)?;
         Ok(residual)
     }
 

@@ -83,7 +83,7 @@ impl PinchPoint {
         };
         let off = fit.all[..local.fitted].iter().zip(&fit.parameters);
         let off = off.map(|(x, at)| (fit.map.at(*at) - x).norm());
-        curve_end::follows(off, residual, fit.ep, &self.tuning.end)?;
+        curve_end::follows(off, residual, fit.ep, self.tuning.end.astray)?;
         fit.surrounds(local.fitted, local.radius - shift)?;
         fit.has_room(local.radius, shift)?;
         Ok(fit)

@@ -81,8 +81,8 @@ impl RimTuning {
 /// When any number of pages in a curve are believed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BookTuning {
-    /// What it has in common with ends of curves: the share of points astray.
-    pub end: CurveEndTuning,
+    /// Share of the points that may be farther than ep from the sheets.
+    pub astray: f64,
     /// How its pages are read.
     pub pages: PagesTuning,
     /// Farthest that the curve is from the middle of the points, in radii: farther out pages are missing in the ball.
@@ -100,7 +100,7 @@ pub struct BookTuning {
 impl BookTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
-        end: CurveEndTuning::MEASURED,
+        astray: CurveEndTuning::MEASURED.astray,
         pages: PagesTuning::MEASURED,
         off_center: 0.35,
         share: 0.04,
