@@ -28,6 +28,8 @@ pub struct Pinned {
     pub seed: Option<u64>,
     /// [`Parameters::surface`].
     pub surface: Option<bool>,
+    /// [`Parameters::least_hole`].
+    pub least_hole: Option<f64>,
     /// [`Parameters::boundary`]: rows that are known to lie on the boundary.
     pub boundary: Vec<usize>,
     /// [`Parameters::models`].
@@ -122,6 +124,7 @@ impl Pinned {
             dl,
             seed: self.seed.unwrap_or(usual.seed),
             surface: self.surface.unwrap_or(usual.surface || closed),
+            least_hole: self.least_hole,
             boundary: self.boundary.clone(),
             models: self.models(),
             method: self.method.unwrap_or(usual.method),

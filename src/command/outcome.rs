@@ -14,6 +14,15 @@ const REASONS: usize = 8;
 
 /// The verdict on a verified mesh in a line, with what it does not cover.
 pub fn verdict(outcome: &Outcome) -> String {
+    let faithful = outcome.certificate.faithful.as_ref();
+    match faithful.and_then(|told| told.covered) {
+        None => checked(outcome),
+        Some(covered) => format!("{}, {covered}", checked(outcome)),
+    }
+}
+
+/// The same without what was taken for granted.
+fn checked(outcome: &Outcome) -> String {
     let unchecked = outcome.certificate.unchecked();
     if unchecked.is_empty() {
         return "verified".into();
@@ -97,6 +106,9 @@ pub fn write_reconstruction(
         "method": parameters.method.to_string(),
         "estimator": outcome.report.plugins.estimator,
     });
+    if let Some(width) = parameters.least_hole {
+        metadata["least_hole"] = json!(width);
+    }
     if let Some(given) = &outcome.report.given {
         metadata["distances"] = json!(given);
         metadata["unchecked"] = json!(outcome.certificate.unchecked());

@@ -109,6 +109,14 @@ pub struct ParameterArguments {
     #[arg(long)]
     pub surface: bool,
 
+    /// Width of the narrowest hole that the surface may have, where you know it, in spacings of the points
+    ///
+    /// A gap of the points that is no chance is taken for a hole, and a mesh that covers it is refused. Scans have seams
+    /// where points are missing and nothing is open: when you know that no hole is narrower than this, narrower gaps may be covered. The
+    /// verdict says so.
+    #[arg(long, help_heading = TOLERANCES, hide_short_help = true, value_name = "SPACINGS", value_parser = positive)]
+    pub least_hole: Option<f64>,
+
     /// Singularity models that compete, separated by commas, or auto for all of them
     ///
     /// two-planes (a double curve), refined-two-planes (the same with the paper's equation 5), boundary (found, not
@@ -189,6 +197,7 @@ impl ParameterArguments {
             dl: self.dl,
             seed: self.seed,
             surface: self.surface.then_some(true),
+            least_hole: self.least_hole,
             boundary,
             models: self.models.as_ref().map(|models| models.0.clone()),
             method: Some(self.method.into()),

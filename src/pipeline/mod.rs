@@ -73,6 +73,16 @@ struct Parts {
     interrupt: Interrupt,
 }
 
+impl Parts {
+    /// The thresholds of the certificate, with what the parameters say about the surface.
+    fn limits(&self) -> Limits {
+        Limits {
+            least_hole: self.parameters.least_hole.unwrap_or(self.limits.least_hole),
+            ..self.limits.clone()
+        }
+    }
+}
+
 /// Models that compete.
 enum Models {
     /// Those that the parameters name.

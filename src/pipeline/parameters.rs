@@ -68,6 +68,10 @@ pub struct Parameters {
     pub seed: u64,
     /// Take every point as 2-dimensional and look for no crossing.
     pub surface: bool,
+    /// Width of the narrowest hole that the surface may have, in local spacings of the points, where that is known:
+    /// see [`Limits::least_hole`](crosscap_algorithms::certificate::Limits::least_hole).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_hole: Option<f64>,
     /// Rows of points on the boundary.
     pub boundary: Vec<usize>,
     /// Singularity models that compete, by name.
@@ -93,6 +97,7 @@ impl Parameters {
             dl,
             seed: 0,
             surface: false,
+            least_hole: None,
             boundary: Vec::new(),
             models: vec![ModelName::TwoPlanes],
             method: Method::default(),
@@ -169,6 +174,9 @@ impl Parameters {
                            lines: conformal lengths ask for --surface --models two-planes and no boundary"
                     .into(),
             });
+        }
+        if let Some(width) = self.least_hole.filter(|w| !(*w > 0.0 && w.is_finite())) {
+            return refuse("least-hole", width, "a positive number of spacings");
         }
         self.spaces.check()
     }

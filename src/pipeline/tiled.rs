@@ -177,7 +177,7 @@ impl Maker for Tiled<'_> {
             landmark_separation: Some(dl),
             special_points,
             closed: true,
-            limits: parts.limits.clone(),
+            limits: parts.limits(),
             ..CertificateOptions::default()
         };
         let picked: Vec<CloudRow> = (evidence_rows(points, &options.limits).into_iter())

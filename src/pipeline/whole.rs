@@ -76,7 +76,7 @@ impl Maker for Whole<'_> {
             closed: parts.parameters.boundary.is_empty()
                 && !parts.models.all().iter().any(|m| m.finds_boundary()),
             faithful: parts.parameters.spaces.metric != MetricName::Lifted,
-            limits: parts.limits.clone(),
+            limits: parts.limits(),
             ..CertificateOptions::default()
         };
         Ok(match &prepared.given {

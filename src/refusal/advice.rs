@@ -5,6 +5,7 @@ use super::kind::FaultKind;
 use crate::auto::{CLOSEST, ROOMY, Topology};
 use crate::pipeline::{Outcome, Parameters};
 use crate::spaces::MetricName;
+use crosscap_algorithms::certificate::ViolationKind;
 use crosscap_algorithms::singularity::ModelName;
 use crosscap_core::Error;
 use serde::Serialize;
@@ -19,6 +20,14 @@ pub enum Advice {
     Parameters(Box<Parameters>, Topology),
     /// So many points in all, spread like those that are there.
     MorePoints(usize),
+    /// So many points in all, or to say that the surface has no hole as narrow as the gaps of the points, if that is known: nothing
+    /// else is wrong with the mesh.
+    DenserOrNoHole {
+        /// Points in all.
+        points: usize,
+        /// Width of the narrowest hole with which the mesh is verified, in local spacings.
+        least_hole: f64,
+    },
     /// Less noise, or a coarser mesh than this landmark separation gives.
     LessNoise {
         /// The landmark separation that was tried, unit of the data.
@@ -100,12 +109,40 @@ impl Advice {
             FaultKind::Ends => Self::Boundary,
             FaultKind::Gap | FaultKind::Merged => match apart(outcome) {
                 Some((dl, spacing)) if dl > CLOSEST * spacing => Self::CloserLandmarks { dl },
-                Some((dl, spacing)) => more((wanted(first.kind) * spacing / dl).powi(2)),
+                Some((dl, spacing)) => {
+                    let denser = more((wanted(first.kind) * spacing / dl).powi(2));
+                    denser.or_no_hole(outcome)
+                }
                 None => more(2.0),
             },
             FaultKind::Unresolved | FaultKind::Unconfirmed => Self::MoreTries,
         }
     }
+}
+
+/// Width of gaps is told in tenths of a spacing, and asked for in as many above it.
+const TENTHS: f64 = 10.0;
+
+impl Advice {
+    /// The same, or to say that there is no such hole, where gaps are all that is wrong.
+    fn or_no_hole(self, outcome: &Result<Outcome, Error>) -> Self {
+        match (self, outcome.as_ref().ok().and_then(widest_gap)) {
+            (Self::MorePoints(points), Some(widest)) => Self::DenserOrNoHole {
+                points,
+                least_hole: (widest * TENTHS).floor() / TENTHS + 1.0 / TENTHS,
+            },
+            (denser, _) => denser,
+        }
+    }
+}
+
+/// The widest of the gaps that a mesh covers, in local spacings, where nothing else is wrong with it.
+fn widest_gap(outcome: &Outcome) -> Option<f64> {
+    let mut violations = outcome.certificate.violations();
+    let gaps_only = violations.all(|v| v.kind == ViolationKind::BridgedGap);
+    let told = outcome.certificate.faithful.as_ref()?;
+    told.widest_bridged
+        .filter(|_| gaps_only && outcome.failures.is_empty())
 }
 
 /// Spacings of the points that landmarks are apart where the program chooses them; more where neighborhoods, which are twice as
@@ -131,6 +168,10 @@ impl fmt::Display for Advice {
             Self::MorePoints(0) => f.write_str("sample more densely"),
             Self::MorePoints(count) => {
                 write!(f, "sample more densely: about {count} points in all would do")
+            }
+            Self::DenserOrNoHole { points, least_hole } => {
+                write!(f, "{}; or, if you know that the surface has no hole narrower than {least_hole:.1} spacings of the points, say so \
+                    (--least-hole {least_hole:.1})", Self::MorePoints(*points))
             }
             Self::LessNoise { dl: Some(dl) } => write!(
                 f,

@@ -7,6 +7,7 @@ use crosscap_algorithms::certificate::Limits;
 use crosscap_algorithms::singularity::ModelName;
 use crosscap_algorithms::surfaces::{Drawing, Feature, Random, SampleSurface, Sampling};
 use crosscap_core::PointCloud;
+use std::f64::consts::PI;
 
 fn sample(name: &str, count: usize) -> PointCloud<f64> {
     let surface = SampleSurface::find(name).unwrap();
@@ -62,6 +63,46 @@ fn a_gap_that_is_covered_stays_open_at_the_separation_that_is_told() {
         ..Pinned::default()
     };
     assert_eq!(verified(&plate.points, pinned), [1, 1, 0]);
+}
+
+/// About so many points spread evenly over the unit sphere, without those nearer than `radius` to a pole.
+fn even_sphere(count: usize, radius: f64) -> PointCloud<f64> {
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    let place = |k: usize| {
+        let z = 1.0 - (2 * k + 1) as f64 / count as f64;
+        let (sin, cos) = (golden * k as f64).sin_cos();
+        let across = (1.0 - z * z).sqrt();
+        [across * cos, across * sin, z]
+    };
+    let away = |[x, y, z]: &[f64; 3]| (x * x + y * y + (1.0 - z).powi(2)).sqrt() > radius;
+    let places = (0..count).map(place).filter(away);
+    PointCloud::new(3, places.flatten().collect()).unwrap()
+}
+
+#[test]
+fn a_gap_that_is_no_chance_is_covered_by_more_points_or_by_who_knows_better() {
+    let (count, radius) = (3000, 0.1);
+    let scan = even_sphere(count, radius);
+    let spacing = (4.0 * PI / count as f64).sqrt();
+    let coarse = auto(6.0 * spacing, 3.0 * spacing);
+    let refusal = refused(&scan, coarse, FaultKind::Gap);
+    let Advice::DenserOrNoHole { points, least_hole } = refusal.advice else {
+        panic!("{refusal}")
+    };
+    assert!((3.2..3.8).contains(&least_hole), "{refusal}");
+    let known = Auto::new(Pinned {
+        least_hole: Some(least_hole),
+        ..Pinned::default()
+    });
+    let outcome = known.reconstruct(&scan).unwrap().into_verified(Some(&scan));
+    let outcome = outcome.unwrap();
+    assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
+    let told = outcome.certificate.faithful.unwrap().covered.unwrap();
+    assert_eq!(told.gaps, 1, "{told:?}");
+    assert!(told.widest < least_hole, "{told:?}");
+    // It was a hole after all.
+    let many = even_sphere(points, radius);
+    assert_eq!(verified(&many, Pinned::default()), [1, 0, 0]);
 }
 
 #[test]

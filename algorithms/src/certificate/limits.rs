@@ -48,6 +48,9 @@ pub struct Limits {
     /// Probability of a false alarm, over the whole cloud, at which a finding about the points is
     /// held for no chance. Whoever tries k times until a mesh passes multiplies it by k: the verdict gets stricter.
     pub significance: f64,
+    /// Width of the narrowest hole that the surface may have, in local spacings of the points, where that is known from
+    /// elsewhere: narrower gaps of the points are no finding. 0 where nothing is known.
+    pub least_hole: f64,
     /// Greatest distance of a vertex to the quadratic patch through the points of each sheet at it, in local spacings
     /// of the points, beyond four times their scatter.
     pub vertex_offset: f64,
@@ -72,6 +75,7 @@ impl Default for Limits {
             unused_landmarks: 0.01,
             points_tested: 200_000,
             significance: 1e-3,
+            least_hole: 0.0,
             vertex_offset: 1.0,
         }
     }

@@ -58,7 +58,7 @@ pub use crosscap_core::{Link, LinkKind};
 pub use distance_report::DistanceReport;
 pub use edges::EdgeReport;
 pub use evidence::{evidence_places, evidence_rows};
-pub use faithful::{FaithfulReport, Gap, Merged, Offset, Stretch};
+pub use faithful::{Covered, FaithfulReport, Gap, Merged, Offset, Stretch};
 pub use geometry_report::GeometryReport;
 pub use heights::distances_to_mesh;
 pub use indices::IndexReport;

@@ -85,6 +85,7 @@ impl CertificateOptions<'_> {
             ("off_plane", l.off_plane),
             ("unused_landmarks", l.unused_landmarks),
             ("significance", l.significance),
+            ("least_hole", l.least_hole),
             ("vertex_offset", l.vertex_offset),
             ("noise", self.noise),
         ];

@@ -8,6 +8,7 @@ mod arcs;
 mod around;
 mod chains;
 mod chance;
+mod covered;
 mod crease;
 mod discs;
 mod evenness;
@@ -32,6 +33,7 @@ mod wings;
 mod tests;
 
 pub use arcs::Stretch;
+pub use covered::Covered;
 pub use discs::Gap;
 pub(super) use search::Search;
 pub use sheets::{Merged, Offset};
@@ -57,6 +59,13 @@ pub struct FaithfulReport {
     pub significance: f64,
     /// The least likely empty region that the mesh covers.
     pub largest_gap: Option<Gap>,
+    /// Width of the widest of the empty regions that are told as violations, in local spacings.
+    #[serde(skip)]
+    pub widest_bridged: Option<f64>,
+    /// Gaps that are no chance, but narrower than the narrowest hole that the surface is said to have; none where nothing was
+    /// said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub covered: Option<Covered>,
     /// The least likely stretch of a curve without points.
     pub largest_stretch: Option<Stretch>,
     /// The least likely gap in the heights of points over one sheet of the mesh, where there is any.
@@ -98,7 +107,11 @@ pub(super) fn check(
         significance,
         ..FaithfulReport::default()
     };
-    gaps_told(search.run(significance), &mut report);
+    gaps_told(
+        search.run(significance),
+        options.limits.least_hole,
+        &mut report,
+    );
     let stretches = arcs::stretches(search.mesh, search.incidence, search.feet);
     stretches_told(stretches, &mut report);
     if let Some(points) = options.points {
@@ -110,16 +123,18 @@ pub(super) fn check(
 }
 
 /// Regions without points that the mesh covers, as a figure and a violation.
-fn gaps_told(gaps: Vec<Gap>, report: &mut FaithfulReport) {
-    let bridged: Vec<&Gap> = gaps.iter().filter(|g| g.p < report.significance).collect();
+fn gaps_told(gaps: Vec<Gap>, least_hole: f64, report: &mut FaithfulReport) {
+    let no_chance = gaps.iter().filter(|g| g.p < report.significance);
+    let (bridged, covered) = Covered::split(no_chance.collect(), least_hole);
+    report.covered = (least_hole > 0.0).then_some(covered);
     for gap in &bridged {
         report.needs(gap.size / RESOLVED);
     }
+    let widths = bridged.iter().map(|gap| gap.width);
+    report.widest_bridged = widths.max_by(f64::total_cmp);
     if let Some(worst) = bridged.first() {
-        let mut triangles: Vec<u32> = bridged.iter().map(|g| g.triangle).collect();
-        triangles.sort_unstable();
-        triangles.dedup();
-        let places = triangles.into_iter().map(Place::Triangle).collect();
+        let triangles = covered::places(&bridged).into_iter();
+        let places = triangles.map(Place::Triangle).collect();
         let detail = if worst.together > 1 {
             let narrowest = |size: f64, gap: &&Gap| size.min(gap.size);
             let size = bridged.iter().fold(f64::INFINITY, narrowest);
@@ -258,6 +273,9 @@ impl fmt::Display for FaithfulReport {
             ),
             None => f.write_str("; no gap bridged"),
         }?;
+        if let Some(covered) = &self.covered {
+            write!(f, ", {covered}")?;
+        }
         if let Some(stretch) = &self.largest_stretch {
             write!(
                 f,
