@@ -2,12 +2,12 @@
 
 use crate::arrays::{Curves, MeshArrays, cloud, deduced, of_cloud, of_curves, of_mesh, tuples};
 use crate::refusal::{bad_value, violation};
+use crosscap::auto::{Measured, Measuring};
 use crosscap::command::convert::places_for;
 use crosscap::command::findings::Findings;
+use crosscap::command::origin::Origin;
 use crosscap::command::{overlay, picture};
 use crosscap_algorithms::certificate::{CertificateOptions, certify};
-use crosscap_algorithms::creases::{CreaseLimits, creases};
-use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::homology::homology as homology_of;
 use crosscap_algorithms::isomap::{IsomapOptions, isomap_places};
 use crosscap_algorithms::pieces::pieces;
@@ -38,46 +38,55 @@ pub fn homology(py: Python<'_>, mesh: MeshArrays<'_>) -> PyResult<String> {
     Ok(json!(found).to_string())
 }
 
-/// What is known about a mesh, as JSON: what `crosscap check --json` prints, and the reasons.
+/// What is known about a mesh, as JSON: what `crosscap check --json` prints, and the reasons. `metadata` is JSON that tells how
+/// it was made.
 #[pyfunction]
 pub fn check(
     py: Python<'_>,
     mesh: MeshArrays<'_>,
+    metadata: &str,
     points: Option<PyReadonlyArray2<'_, f64>>,
     dl: Option<f64>,
     closed: bool,
+    prepare: Option<bool>,
 ) -> PyResult<String> {
     let mesh = mesh.mesh()?;
+    let metadata: Value = serde_json::from_str(metadata).map_err(|error| bad_value(&error))?;
+    let origin = Origin::of(&metadata).map_err(|why| bad_value(&why))?;
     let points = points.as_ref().map(cloud).transpose()?;
-    let known = py.detach(|| checked(&mesh, points.as_ref(), dl, closed));
-    known.map(|known| known.to_string())
+    let options = origin.certificate(dl, closed);
+    let measuring = origin.measuring(dl, prepare);
+    let known = py.detach(|| checked(&mesh, points.as_ref(), &options, &measuring));
+    let known = known.map_err(|error| bad_value(&error))?;
+    Ok(known.to_string())
 }
 
 fn checked(
     mesh: &Mesh,
     points: Option<&PointCloud<f64>>,
-    dl: Option<f64>,
-    closed: bool,
-) -> PyResult<Value> {
-    let options = CertificateOptions {
-        points,
-        landmark_separation: dl,
-        closed,
-        ..CertificateOptions::default()
+    options: &CertificateOptions<'_>,
+    measuring: &Measuring,
+) -> Result<Value, Error> {
+    let homology = homology_of(&mesh.complex)?;
+    let (certificate, creases, preparation) = match points {
+        None => (certify(mesh, options), None, None),
+        Some(points) => {
+            let found = Measured::of(mesh, points, options, measuring)?;
+            (found.certificate, Some(found.creases), found.preparation)
+        }
     };
-    let homology = homology_of(&mesh.complex).map_err(|error| bad_value(&error))?;
-    let certificate = certify(mesh, &options);
     let pieces = pieces(mesh);
-    let bends = points.map(|points| creases(mesh, points, &CreaseLimits::MEASURED, &Serial));
-    let bends = bends.transpose().map_err(|error| bad_value(&error))?;
     let findings = Findings {
         mesh,
         homology: &homology,
         certificate: &certificate,
         pieces: &pieces,
-        creases: bends.as_ref(),
+        creases: creases.as_ref(),
     };
     let mut known = Value::Object(findings.json(certificate.verdict().is_verified()));
+    if let Some(preparation) = preparation {
+        known["preparation"] = json!(preparation);
+    }
     known["reasons"] = certificate.violations().map(violation).collect();
     Ok(known)
 }

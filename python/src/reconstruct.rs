@@ -7,7 +7,7 @@ use crate::refusal::{self, bad_value};
 use crate::run::Run;
 use crosscap::auto::{Auto, Input, Pinned, Search};
 use crosscap::command::estimators::EstimatorName;
-use crosscap::command::outcome::report;
+use crosscap::command::outcome::{metadata, report};
 use crosscap::refusal::Refusal;
 use crosscap::{MetricName, Outcome, Parameters, Pipeline, Stage};
 use crosscap_algorithms::singularity::ModelName;
@@ -219,18 +219,23 @@ pub fn told(progress: Option<Bound<'_, PyAny>>) -> impl FnMut(String) -> PyResul
 pub struct End {
     outcome: Option<Outcome>,
     refusal: Option<Box<Refusal>>,
+    /// Whether something was done about outliers and noise.
+    prepared: bool,
 }
 
 impl End {
     fn of(search: Search, points: Option<&PointCloud<f64>>) -> Self {
+        let prepared = search.preparation.is_some();
         match search.into_verified(points) {
             Ok(outcome) => Self {
                 outcome: Some(outcome),
                 refusal: None,
+                prepared,
             },
             Err(refusal) => Self {
                 outcome: None,
                 refusal: Some(refusal),
+                prepared,
             },
         }
     }
@@ -241,21 +246,30 @@ impl End {
             return Self {
                 outcome: Some(outcome),
                 refusal: None,
+                prepared: false,
             };
         }
         Self {
             outcome: None,
             refusal: Some(Box::new(Refusal::of(Ok(outcome), None, None))),
+            prepared: false,
         }
     }
 
-    /// The arrays of the mesh and `triangle_piece`, as JSON the `report`, and the `refusal`; `None` where
+    /// The arrays of the mesh and `triangle_piece`, as JSON the `report` and the `metadata`, and the `refusal`; `None` where
     /// there is no mesh, and where it is verified.
     pub fn told(&self, py: Python<'_>) -> PyResult<Told> {
         let refusal = self.refusal.as_deref();
         let outcome = self.outcome.as_ref();
         let outcome = outcome.or_else(|| refusal.and_then(|r| r.outcome.as_ref().ok()));
         let mesh = outcome.map(|outcome| of_outcome(py, outcome)).transpose()?;
+        if let (Some(mesh), Some(outcome)) = (&mesh, outcome) {
+            // An attempt can be verified that others speak against.
+            let verified = refusal.is_none();
+            let parameters = &outcome.report.parameters;
+            let metadata = metadata(parameters, outcome, verified, self.prepared);
+            mesh.set_item("metadata", metadata.to_string())?;
+        }
         let refusal = refusal.map(|r| refusal::told(r).to_string());
         Ok((mesh.map(Bound::unbind), refusal))
     }

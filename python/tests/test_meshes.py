@@ -40,6 +40,35 @@ def test_a_mesh_is_checked(sphere):
     assert "disc" in found.description
 
 
+def test_a_mesh_is_checked_by_what_noisy_points_say():
+    points = crosscap.sample("sphere", 2000, random_state=3, noise=0.03).points
+    points = np.vstack([points, [[2.5, 0, 0], [0, -3, 1]]])
+    mesh = crosscap.SurfaceReconstruction(random_state=1).fit(points).mesh_
+    found = crosscap.check(mesh, points)
+    assert found.verified
+    assert found.report["preparation"]["outliers"] == [2000, 2001]
+    assert found.report["preparation"]["moved"] > 0.01
+    # The points as they are: two of them are far from the mesh.
+    as_given = crosscap.check(mesh, points, prepare=False)
+    assert not as_given.verified and "preparation" not in as_given.report
+    # Nor does noise excuse what is wrong.
+    torn = crosscap.Mesh(mesh.vertices, mesh.triangles[1:], metadata=mesh.metadata)
+    assert not crosscap.check(torn, points, closed=True).verified
+
+
+def test_a_mesh_is_checked_by_what_it_tells_of_itself(sphere, tmp_path):
+    mesh = crosscap.SurfaceReconstruction(eps=0.4, dl=0.2, surface=True).fit(sphere).mesh_
+    assert mesh.metadata["dl"] == 0.2 and mesh.metadata["verified"]
+    assert crosscap.check(mesh, sphere).report["certificate"] == (
+        crosscap.check(mesh, sphere, dl=0.2, prepare=False).report["certificate"]
+    )
+    crosscap.write_mesh(tmp_path / "mesh.npz", mesh)
+    assert crosscap.read_mesh(tmp_path / "mesh.npz").metadata == mesh.metadata
+    told = {**mesh.metadata, "special_points": [7]}
+    with pytest.raises(ValueError, match="special points"):
+        crosscap.check(crosscap.Mesh(mesh.vertices, mesh.triangles, metadata=told))
+
+
 def test_arrays_that_are_no_mesh_are_refused():
     with pytest.raises(ValueError, match="vertices"):
         crosscap.Mesh([1.0, 2.0, 3.0], [[0, 1, 2]])

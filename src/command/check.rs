@@ -3,14 +3,14 @@
 use super::failure::Failure;
 use super::findings::{Findings, pretty};
 use super::number::{betti, counted, median, positive};
+use super::origin::Origin;
 use super::output;
 use super::parameters::yes_or_no;
 use super::points::PointArguments;
 use super::terminal::{Progress, say};
 use clap::Args;
-use crosscap::MetricName;
-use crosscap::auto::{Measured, Measuring};
-use crosscap_algorithms::certificate::{CertificateOptions, SpecialPoint, certify};
+use crosscap::auto::Measured;
+use crosscap_algorithms::certificate::certify;
 use crosscap_algorithms::homology::{LocalHomology, homology, local_homology};
 use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::prepare::PreparationSummary;
@@ -89,26 +89,13 @@ impl Check {
         let mesh = &file.mesh;
         let points = self.cloud(mesh)?;
         let progress = Progress::new("checking");
-        let known = file.extras.metadata.get("dl").and_then(Value::as_f64);
-        let special_points = self.declared(&file.extras.metadata)?;
-        let metric = metric_of(&file.extras.metadata);
-        let options = CertificateOptions {
-            special_points: &special_points,
-            landmark_separation: self.dl.or(known.filter(|&dl| dl > 0.0)),
-            closed: self.closed,
-            faithful: metric != MetricName::Lifted,
-            ..CertificateOptions::default()
-        };
-        let measuring = Measuring {
-            prepare: self
-                .prepare
-                .unwrap_or_else(|| is_prepared(&file.extras.metadata)),
-            metric: self.dl.is_none().then_some(metric),
-            threads: 0,
-        };
+        let origin = Origin::of(&file.extras.metadata)
+            .map_err(|why| Failure::usage(format!("{}: {why}", self.mesh.display())))?;
+        let options = origin.certificate(self.dl, self.closed);
+        let measuring = origin.measuring(self.dl, self.prepare);
         let homology = homology(&mesh.complex)?;
         let local = match self.local {
-            true => Some(self.local_check(mesh, &file.extras.metadata)?),
+            true => Some(self.local_check(mesh, origin.eps)?),
             false => None,
         };
         let (certificate, creases, preparation) = match &points {
@@ -219,22 +206,8 @@ impl Check {
         )))
     }
 
-    /// The points that the mesh declares, as it declares which edges are on curves.
-    fn declared(&self, metadata: &Value) -> Result<Vec<SpecialPoint>, Failure> {
-        let Some(all) = metadata.get("special_points") else {
-            return Ok(Vec::new());
-        };
-        serde_json::from_value(all.clone()).map_err(|error| {
-            Failure::usage(format!(
-                "{}: its special points, vertices with the link that each must have, cannot be read: {error}",
-                self.mesh.display()
-            ))
-        })
-    }
-
-    fn local_check(&self, mesh: &Mesh, metadata: &Value) -> Result<LocalHomology, Failure> {
-        let made_with = metadata.get("eps").and_then(Value::as_f64);
-        let Some(eps) = self.eps.or(made_with.filter(|&eps| eps > 0.0)) else {
+    fn local_check(&self, mesh: &Mesh, made_with: Option<f64>) -> Result<LocalHomology, Failure> {
+        let Some(eps) = self.eps.or(made_with) else {
             return Err(Failure::usage(format!(
                 "{}: does not tell the eps it was made with: give --eps, the radius of the neighborhoods of --local",
                 self.mesh.display()
@@ -315,17 +288,4 @@ fn told(local: &LocalHomology, mesh: &Mesh) -> String {
         betti(first.betti_rational),
         betti(first.betti_mod2)
     )
-}
-
-/// The metric that a mesh was made with, as its file tells; straight lines where it does not.
-fn metric_of(metadata: &Value) -> MetricName {
-    let name = metadata.pointer("/spaces/metric").and_then(Value::as_str);
-    name.and_then(|name| name.parse().ok()).unwrap_or_default()
-}
-
-/// Whether something was done about outliers and noise before a mesh was made, as its file tells. Of a mesh from elsewhere that is not
-/// known, and it is judged as that of a run without parameters.
-fn is_prepared(metadata: &Value) -> bool {
-    let told = metadata.get("prepared").and_then(Value::as_bool);
-    told.unwrap_or(metadata.get("dl").is_none())
 }

@@ -23,6 +23,7 @@ mod limited;
 mod needs;
 mod number;
 mod observed;
+pub mod origin;
 pub mod outcome;
 mod output;
 pub mod overlay;

@@ -90,6 +90,23 @@ pub fn write_reconstruction(
     verified: bool,
     prepared: bool,
 ) -> Result<(), Failure> {
+    let pieces = outcome.pieces.as_ref().ok();
+    let extras = MeshExtras {
+        metadata: metadata(parameters, outcome, verified, prepared),
+        pieces: pieces.map(|p| p.triangle_piece.iter().map(|&k| k.into()).collect()),
+    };
+    let places = super::convert::places_for(path, &outcome.mesh, None)?;
+    write_mesh(path, &outcome.mesh, &extras, places.as_ref())?;
+    Ok(())
+}
+
+/// What is written beside a mesh of how it was made; [`Origin`](super::origin::Origin) reads it again.
+pub fn metadata(
+    parameters: &Parameters,
+    outcome: &Outcome,
+    verified: bool,
+    prepared: bool,
+) -> Value {
     let mut metadata = json!({
         "crosscap": env!("CARGO_PKG_VERSION"),
         "verified": verified,
@@ -122,14 +139,7 @@ pub fn write_reconstruction(
     if !parameters.spaces.are_usual() {
         metadata["spaces"] = json!(parameters.spaces);
     }
-    let pieces = outcome.pieces.as_ref().ok();
-    let extras = MeshExtras {
-        metadata,
-        pieces: pieces.map(|p| p.triangle_piece.iter().map(|&k| k.into()).collect()),
-    };
-    let places = super::convert::places_for(path, &outcome.mesh, None)?;
-    write_mesh(path, &outcome.mesh, &extras, places.as_ref())?;
-    Ok(())
+    metadata
 }
 
 /// The report for programs.

@@ -299,7 +299,12 @@ class SurfaceReconstruction(_Bridges, BaseEstimator):
     def fit(self, X: Any, y: object = None) -> SurfaceReconstruction: ...
 
 def check(
-    mesh: Mesh, points: ArrayLike | None = None, *, dl: float | None = None, closed: bool = False
+    mesh: Mesh,
+    points: ArrayLike | None = None,
+    *,
+    dl: float | None = None,
+    closed: bool = False,
+    prepare: bool | None = None,
 ) -> Findings: ...
 def compare(
     points: ArrayLike,

@@ -13,7 +13,14 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 _Mesh = Mapping[str, Any]
 
-def check(mesh: _Mesh, points: _Floats | None, dl: float | None, closed: bool) -> str: ...
+def check(
+    mesh: _Mesh,
+    metadata: str,
+    points: _Floats | None,
+    dl: float | None,
+    closed: bool,
+    prepare: bool | None,
+) -> str: ...
 def compare(
     points: _Floats,
     settings: Mapping[str, Any],

@@ -95,7 +95,7 @@ class Mesh:
     triangle_piece : array-like of int of shape (n_triangles,), optional
         For each triangle the piece of the surface that it belongs to.
     metadata : dict, optional
-        How the mesh came to be.
+        How the mesh came to be; :func:`check` goes by it.
 
     Examples
     --------
@@ -230,7 +230,7 @@ def homology(mesh):
     return _homology(json.loads(_crosscap.homology(mesh._arrays())))
 
 
-def check(mesh, points=None, *, dl=None, closed=False):
+def check(mesh, points=None, *, dl=None, closed=False, prepare=None):
     """Ask a mesh everything that can be decided without knowing the true surface.
 
     Parameters
@@ -240,9 +240,15 @@ def check(mesh, points=None, *, dl=None, closed=False):
     points : array-like of shape (n_points, n_dimensions), optional
         The points that it was made from: distances both ways are measured.
     dl : float, optional
-        Separation of the landmarks; 3/4 of the median edge when left out.
+        Separation of the landmarks; when left out what the mesh was made with, as its metadata tell,
+        or 3/4 of the median edge.
     closed : bool, default=False
         Whether the surface is known to have no boundary.
+    prepare : bool, optional
+        Whether outliers are left out and noise is allowed for, as a reconstruction without parameters
+        does: a mesh is smoother than points that scatter, and would be refused for that. What was
+        found is in ``report["preparation"]``. When left out what the mesh was made with, and true for
+        a mesh from elsewhere.
 
     Returns
     -------
@@ -258,7 +264,8 @@ def check(mesh, points=None, *, dl=None, closed=False):
     """
     if points is not None:
         points = np.ascontiguousarray(points, dtype=np.float64)
-    told = json.loads(_crosscap.check(mesh._arrays(), points, dl, closed))
+    metadata = json.dumps(mesh.metadata)
+    told = json.loads(_crosscap.check(mesh._arrays(), metadata, points, dl, closed, prepare))
     return Findings(
         verified=told["verified"],
         reasons=_reasons(told.pop("reasons")),

@@ -256,7 +256,7 @@ class SurfaceReconstruction(BaseEstimator):
         if mesh is None:
             self._keep_nothing()
         else:
-            self._keep(mesh, verified=refusal is None)
+            self._keep(mesh)
         self._refuse(refusal)
         return self
 
@@ -294,11 +294,11 @@ class SurfaceReconstruction(BaseEstimator):
             "threads": joblib.effective_n_jobs(self.n_jobs),
         }
 
-    def _keep(self, told, verified):
+    def _keep(self, told):
         report = json.loads(told.pop("report"))
         homology = _homology(report["homology"])
-        # An attempt can be verified that others speak against.
-        metadata = {"verified": verified, "parameters": report["parameters"]}
+        metadata = json.loads(told.pop("metadata"))
+        metadata["parameters"] = report["parameters"]
         self._keep_mesh(Mesh(**told, metadata=metadata))
         self.pieces_ = _pieces(report["pieces"])
         self.description_ = report["description"]

@@ -60,7 +60,7 @@ def reconstruct(holder, points, eps, dl, *, surface, tri_eps, tiles, random_stat
             )
     refusal = None if why is None else _refusal(why)
     found.n_features_in_ = points.width
-    found._keep(mesh, verified=refusal is None)
+    found._keep(mesh)
     found._refuse(refusal)
     return found
 
