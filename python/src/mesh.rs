@@ -5,7 +5,7 @@ use crate::refusal::{bad_value, violation};
 use crosscap::auto::{Measured, Measuring};
 use crosscap::command::convert::places_for;
 use crosscap::command::findings::Findings;
-use crosscap::command::origin::Origin;
+use crosscap::command::origin::{Asked, Origin};
 use crosscap::command::{overlay, picture};
 use crosscap_algorithms::certificate::{CertificateOptions, certify};
 use crosscap_algorithms::homology::homology as homology_of;
@@ -38,6 +38,16 @@ pub fn homology(py: Python<'_>, mesh: MeshArrays<'_>) -> PyResult<String> {
     Ok(json!(found).to_string())
 }
 
+/// What whoever asks about a mesh knows, as Python hands it over.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Known {
+    dl: Option<f64>,
+    closed: bool,
+    prepare: Option<bool>,
+    least_hole: Option<f64>,
+}
+
 /// What is known about a mesh, as JSON: what `crosscap check --json` prints, and the reasons. `metadata` is JSON that tells how
 /// it was made.
 #[pyfunction]
@@ -46,16 +56,19 @@ pub fn check(
     mesh: MeshArrays<'_>,
     metadata: &str,
     points: Option<PyReadonlyArray2<'_, f64>>,
-    dl: Option<f64>,
-    closed: bool,
-    prepare: Option<bool>,
+    asked: Known,
 ) -> PyResult<String> {
     let mesh = mesh.mesh()?;
     let metadata: Value = serde_json::from_str(metadata).map_err(|error| bad_value(&error))?;
     let origin = Origin::of(&metadata).map_err(|why| bad_value(&why))?;
     let points = points.as_ref().map(cloud).transpose()?;
-    let options = origin.certificate(dl, closed);
-    let measuring = origin.measuring(dl, prepare);
+    let asked = Asked {
+        dl: asked.dl,
+        closed: asked.closed,
+        prepare: asked.prepare,
+        least_hole: asked.least_hole,
+    };
+    let (options, measuring) = (origin.certificate(&asked), origin.measuring(&asked));
     let known = py.detach(|| checked(&mesh, points.as_ref(), &options, &measuring));
     let known = known.map_err(|error| bad_value(&error))?;
     Ok(known.to_string())

@@ -60,6 +60,7 @@ pub struct Settings {
     surface: bool,
     method: Option<String>,
     prepare: Option<bool>,
+    least_hole: Option<f64>,
     tries: usize,
     time_limit: Option<f64>,
     seed: u64,
@@ -121,6 +122,7 @@ impl Settings {
             neighborhoods: self.neighborhoods.as_deref().map(str::parse).transpose()?,
             // A metric of one's own is about the points as they were given.
             prepare: self.has_own_metric().then_some(false).or(self.prepare),
+            least_hole: self.least_hole,
             threads: (self.threads > 0).then_some(self.threads),
             ..Pinned::default()
         });

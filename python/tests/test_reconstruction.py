@@ -53,6 +53,26 @@ def test_lengths_are_found(sphere):
     assert pinned.dl_ == 0.25 and pinned.betti_ == (1, 0, 1)
 
 
+def test_who_knows_that_there_is_no_narrow_hole_can_say_so():
+    # Points spread evenly over a sphere, without a cap of three spacings: a seam of a scan, or a hole.
+    count = 3000
+    angle, height = np.pi * (3 - np.sqrt(5)) * np.arange(count), 1 - (2 * np.arange(count) + 1) / count
+    across = np.sqrt(1 - height**2)
+    points = np.stack([across * np.cos(angle), across * np.sin(angle), height], axis=1)
+    points = points[np.linalg.norm(points - [0, 0, 1], axis=1) > 0.1]
+    lengths = {"eps": 0.39, "dl": 0.19}
+    with pytest.raises(crosscap.Refusal, match="gaps of the points") as refused:
+        crosscap.SurfaceReconstruction(**lengths).fit(points)
+    assert "(least_hole= 3." in refused.value.advice
+    surface = crosscap.SurfaceReconstruction(**lengths, least_hole=4).fit(points)
+    assert surface.betti_ == (1, 0, 1)
+    assert surface.certificate_["faithful"]["covered"]["gaps"] == 1
+    # The mesh tells, and whoever judges it goes by that or by something else.
+    assert surface.mesh_.metadata["least_hole"] == 4
+    assert crosscap.check(surface.mesh_, points).verified
+    assert not crosscap.check(surface.mesh_, points, least_hole=2).verified
+
+
 def test_threads_and_layout_of_memory_change_nothing(sphere):
     first = crosscap.SurfaceReconstruction(**SPHERE, n_jobs=1).fit(sphere)
     for points in (sphere, np.asfortranarray(sphere), sphere.tolist()):

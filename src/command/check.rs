@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::findings::{Findings, pretty};
 use super::number::{betti, counted, median, positive};
-use super::origin::Origin;
+use super::origin::{Asked, Origin};
 use super::output;
 use super::parameters::yes_or_no;
 use super::points::PointArguments;
@@ -57,6 +57,11 @@ pub struct Check {
     #[arg(long, value_name = "YES|NO", value_parser = yes_or_no, requires = "points")]
     prepare: Option<bool>,
 
+    /// Width of the narrowest hole that the surface may have, where you know it, in spacings of the points: narrower gaps may
+    /// be covered [default: what the mesh was made with]
+    #[arg(long, value_name = "SPACINGS", value_parser = positive, requires = "points")]
+    least_hole: Option<f64>,
+
     /// The surface is known to have no boundary: boundary edges are refused
     #[arg(long)]
     closed: bool,
@@ -91,8 +96,13 @@ impl Check {
         let progress = Progress::new("checking");
         let origin = Origin::of(&file.extras.metadata)
             .map_err(|why| Failure::usage(format!("{}: {why}", self.mesh.display())))?;
-        let options = origin.certificate(self.dl, self.closed);
-        let measuring = origin.measuring(self.dl, self.prepare);
+        let asked = Asked {
+            dl: self.dl,
+            closed: self.closed,
+            prepare: self.prepare,
+            least_hole: self.least_hole,
+        };
+        let (options, measuring) = (origin.certificate(&asked), origin.measuring(&asked));
         let homology = homology(&mesh.complex)?;
         let local = match self.local {
             true => Some(self.local_check(mesh, origin.eps)?),

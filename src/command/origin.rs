@@ -2,7 +2,7 @@
 
 use crosscap::MetricName;
 use crosscap::auto::Measuring;
-use crosscap_algorithms::certificate::{CertificateOptions, SpecialPoint};
+use crosscap_algorithms::certificate::{CertificateOptions, Limits, SpecialPoint};
 use serde_json::Value;
 
 /// What a mesh tells of how it was made, in so far as its certificate depends on it. A mesh from elsewhere tells nothing.
@@ -12,6 +12,8 @@ pub struct Origin {
     pub dl: Option<f64>,
     /// Radius of the neighborhoods, unit of the data.
     pub eps: Option<f64>,
+    /// Width of the narrowest hole that the surface was said to have, in spacings of the points.
+    pub least_hole: Option<f64>,
     /// Vertices that have the link of a singular point, as a model declared them.
     pub special_points: Vec<SpecialPoint>,
     /// The metric that the landmarks followed; straight lines where that is not told.
@@ -42,6 +44,7 @@ impl Origin {
         Ok(Self {
             dl: length("dl"),
             eps: length("eps"),
+            least_hole: length("least_hole"),
             special_points,
             metric: metric
                 .and_then(|name| name.parse().ok())
@@ -50,25 +53,43 @@ impl Origin {
         })
     }
 
-    /// What its certificate is to go by, where the separation is `dl` if that is given.
-    pub fn certificate(&self, dl: Option<f64>, closed: bool) -> CertificateOptions<'_> {
+    /// What its certificate is to go by.
+    pub fn certificate(&self, asked: &Asked) -> CertificateOptions<'_> {
+        let least_hole = asked.least_hole.or(self.least_hole);
         CertificateOptions {
             special_points: &self.special_points,
-            landmark_separation: dl.or(self.dl),
-            closed,
+            landmark_separation: asked.dl.or(self.dl),
+            closed: asked.closed,
             faithful: self.metric != MetricName::Lifted,
+            limits: Limits {
+                least_hole: least_hole.unwrap_or(0.0),
+                ..Limits::default()
+            },
             ..CertificateOptions::default()
         }
     }
 
-    /// How it is held against points, where `dl` and `prepare` are as given.
-    pub fn measuring(&self, dl: Option<f64>, prepare: Option<bool>) -> Measuring {
+    /// How it is held against points.
+    pub fn measuring(&self, asked: &Asked) -> Measuring {
         Measuring {
-            prepare: prepare.unwrap_or(self.prepared),
-            metric: dl.is_none().then_some(self.metric),
+            prepare: asked.prepare.unwrap_or(self.prepared),
+            metric: asked.dl.is_none().then_some(self.metric),
             threads: 0,
         }
     }
+}
+
+/// What whoever asks about a mesh knows; it goes before what the mesh tells.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Asked {
+    /// Separation of the landmarks, unit of the data.
+    pub dl: Option<f64>,
+    /// Whether the surface is known to have no boundary.
+    pub closed: bool,
+    /// Whether outliers are left out and noise is allowed for.
+    pub prepare: Option<bool>,
+    /// Width of the narrowest hole that the surface may have, in spacings of the points.
+    pub least_hole: Option<f64>,
 }
 
 #[cfg(test)]
@@ -93,24 +114,30 @@ mod tests {
 
     #[test]
     fn what_is_given_goes_before_what_the_mesh_tells() {
-        let told = json!({ "dl": 0.2, "spaces": { "metric": "conformal" } });
+        let told = json!({ "dl": 0.2, "least_hole": 4.0, "spaces": { "metric": "conformal" } });
         let origin = Origin::of(&told).unwrap();
+        let (nothing, all) = (
+            Asked::default(),
+            Asked {
+                dl: Some(0.3),
+                closed: true,
+                prepare: Some(true),
+                least_hole: Some(5.0),
+            },
+        );
+        let (own, given) = (origin.certificate(&nothing), origin.certificate(&all));
         assert_eq!(
-            origin.certificate(None, false).landmark_separation,
-            Some(0.2)
+            [own.landmark_separation, given.landmark_separation],
+            [Some(0.2), Some(0.3)]
         );
+        assert_eq!([own.limits.least_hole, given.limits.least_hole], [4.0, 5.0]);
+        assert!(!own.closed && given.closed);
+        let (own, given) = (origin.measuring(&nothing), origin.measuring(&all));
         assert_eq!(
-            origin.certificate(Some(0.3), false).landmark_separation,
-            Some(0.3)
+            [own.metric, given.metric],
+            [Some(MetricName::Conformal), None]
         );
-        assert_eq!(
-            origin.measuring(None, None).metric,
-            Some(MetricName::Conformal)
-        );
-        assert_eq!(origin.measuring(Some(0.3), None).metric, None);
-        assert!(
-            !origin.measuring(None, None).prepare && origin.measuring(None, Some(true)).prepare
-        );
+        assert!(!own.prepare && given.prepare);
     }
 
     #[test]

@@ -288,6 +288,7 @@ class SurfaceReconstruction(_Bridges, BaseEstimator):
         surface: bool = False,
         method: str = "cells",
         prepare: bool | None = None,
+        least_hole: float | None = None,
         tries: int = 7,
         time_limit: float | None = None,
         on_refusal: Literal["raise", "warn", "ignore"] = "raise",
@@ -305,6 +306,7 @@ def check(
     dl: float | None = None,
     closed: bool = False,
     prepare: bool | None = None,
+    least_hole: float | None = None,
 ) -> Findings: ...
 def compare(
     points: ArrayLike,

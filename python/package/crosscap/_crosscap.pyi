@@ -17,9 +17,7 @@ def check(
     mesh: _Mesh,
     metadata: str,
     points: _Floats | None,
-    dl: float | None,
-    closed: bool,
-    prepare: bool | None,
+    known: Mapping[str, Any],
 ) -> str: ...
 def compare(
     points: _Floats,

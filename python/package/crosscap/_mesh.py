@@ -230,7 +230,7 @@ def homology(mesh):
     return _homology(json.loads(_crosscap.homology(mesh._arrays())))
 
 
-def check(mesh, points=None, *, dl=None, closed=False, prepare=None):
+def check(mesh, points=None, *, dl=None, closed=False, prepare=None, least_hole=None):
     """Ask a mesh everything that can be decided without knowing the true surface.
 
     Parameters
@@ -249,6 +249,9 @@ def check(mesh, points=None, *, dl=None, closed=False, prepare=None):
         does: a mesh is smoother than points that scatter, and would be refused for that. What was
         found is in ``report["preparation"]``. When left out what the mesh was made with, and true for
         a mesh from elsewhere.
+    least_hole : float, optional
+        Width of the narrowest hole that the surface may have, in spacings of the points, where you know
+        it: narrower gaps of the points may be covered. When left out what the mesh was made with.
 
     Returns
     -------
@@ -265,7 +268,8 @@ def check(mesh, points=None, *, dl=None, closed=False, prepare=None):
     if points is not None:
         points = np.ascontiguousarray(points, dtype=np.float64)
     metadata = json.dumps(mesh.metadata)
-    told = json.loads(_crosscap.check(mesh._arrays(), metadata, points, dl, closed, prepare))
+    known = {"dl": dl, "closed": closed, "prepare": prepare, "least_hole": least_hole}
+    told = json.loads(_crosscap.check(mesh._arrays(), metadata, points, known))
     return Findings(
         verified=told["verified"],
         reasons=_reasons(told.pop("reasons")),

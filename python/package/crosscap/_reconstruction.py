@@ -103,6 +103,9 @@ class SurfaceReconstruction(BaseEstimator):
     prepare : bool, optional
         Whether outliers are left out, and points that scatter moved onto fits of their neighborhoods. When left
         out the program decides, where it chooses lengths. Never with a metric of your own.
+    least_hole : float, optional
+        Width of the narrowest hole that the surface may have, in spacings of the points, where you know it. Gaps
+        that are no chance are taken for holes otherwise, as they are at the seams of a scan.
     tries : int, default=7
         Attempts at most, where lengths are left to the program: what a failed one showed decides on the next.
     time_limit : float, optional
@@ -180,6 +183,7 @@ class SurfaceReconstruction(BaseEstimator):
         surface=False,
         method="cells",
         prepare=None,
+        least_hole=None,
         tries=7,
         time_limit=None,
         on_refusal="raise",
@@ -202,6 +206,7 @@ class SurfaceReconstruction(BaseEstimator):
         self.surface = surface
         self.method = method
         self.prepare = prepare
+        self.least_hole = least_hole
         self.tries = tries
         self.time_limit = time_limit
         self.on_refusal = on_refusal
@@ -288,6 +293,7 @@ class SurfaceReconstruction(BaseEstimator):
             "surface": self.surface,
             "method": self.method,
             "prepare": self.prepare,
+            "least_hole": self.least_hole,
             "tries": self.tries,
             "time_limit": self.time_limit,
             "seed": _seed(self.random_state),
