@@ -137,3 +137,147 @@ fn way<S: Scalar>(ground: &Ground<'_, '_, S>, from: Row, to: Row) -> Vec<f64> {
     let [from, to] = [from, to].map(|row| ground.places.point(row.index()));
     from.iter().zip(to).map(|(a, b)| b - a).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dimension::PrincipalComponents;
+    use crate::execute::Serial;
+    use crate::metric::{BruteForceOracle, Euclidean};
+    use crate::space::Space;
+    use crate::stratify::analysis::{Analysis, Analyzer};
+    use crate::stratify::curve_ends::EndRegion;
+    use crate::stratify::site::{FitUsed, On};
+    use crate::stratify::strata::Strata;
+    use crate::tuning::Tuning;
+    use crosscap_core::{Decomposition, Landmark, PointCloud, Stratum};
+    use proptest::prelude::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    /// How far the fit about the point labels, in dl.
+    const REACH: f64 = 1.5;
+
+    type Place = [f64; 2];
+
+    /// Places a tenth of dl apart on a ray from the origin.
+    fn ray(turns: f64, stretches: &[[f64; 2]]) -> Vec<Place> {
+        let steps = stretches.iter().flat_map(|&[from, to]| {
+            let count = ((to - from) / 0.1) as u32;
+            (0..=count).map(move |k| from + 0.1 * f64::from(k))
+        });
+        let (sin, cos) = (FRAC_PI_2 * turns).sin_cos();
+        steps.map(|r| [r * cos, r * sin]).collect()
+    }
+
+    /// How many boundaries the chains join to the point at the origin, whose fit counts one boundary for each of the
+    /// given lists of places and labels those that are near; `others` are places of boundaries that it knows nothing of.
+    fn joined(boundaries: &[Vec<Place>], others: &[Place], dl: f64) -> usize {
+        let named = (boundaries.iter().enumerate()).flat_map(|(k, places)| {
+            let name = move |&place: &Place| (place, Label::new(1 + k));
+            places.iter().map(name)
+        });
+        let unnamed = others.iter().map(|&place| (place, Label::default()));
+        let origin = ([0.0, 0.0], Label::default());
+        let all: Vec<(Place, Label)> = [origin].into_iter().chain(named).chain(unnamed).collect();
+        let scaled = all.iter().flat_map(|x| x.0.map(|x| x * dl)).collect();
+        let cloud = PointCloud::new(2, scaled).unwrap();
+        let is_near = |place: &Place| place[0].hypot(place[1]) < REACH;
+        let labels = (all.iter().enumerate())
+            .filter(|(k, (place, label))| *k == 0 || *label != Label::default() && is_near(place))
+            .map(|(k, &(_, label))| (Row::new(k), label));
+        let of = |dimension, count| std::iter::repeat_n(Stratum { dimension }, count);
+        let count = boundaries.len();
+        let fit = Decomposition {
+            strata: of(0, 1).chain(of(1, count)).chain(of(2, 1)).collect(),
+            labels: Vec::new(),
+            cells_at_curve: vec![1; count],
+            residual: 0.0,
+            parameters: 0,
+            points: vec![vec![0.0, 0.0]],
+            center: vec![0.0, 0.0],
+            center_offset: 0.0,
+        };
+        let (labels, place) = ([labels.collect(), Vec::new()], vec![0.0, 0.0]);
+        let mut strata = Strata::as_found(&Analysis::of_surface(all.len()), Some(&cloud));
+        for (k, row) in strata.rows().enumerate() {
+            let on = On {
+                kind: [StratumKind::Boundary, StratumKind::Point][usize::from(k == 0)],
+                place: None,
+                moved: 0.0,
+                fit: (k == 0).then_some(FitUsed {
+                    model: 0,
+                    radius: dl,
+                }),
+                cells: u8::from(k > 0),
+            };
+            strata.enter(&cloud, row, Some(on));
+        }
+        strata.add_region(EndRegion::new(labels, fit, place, REACH * dl));
+        let metric = Euclidean::new(cloud);
+        let oracle = BruteForceOracle::new(&metric);
+        let analyzer = Analyzer {
+            space: Space::new(&metric, &oracle),
+            estimator: &PrincipalComponents::new(0.05).unwrap(),
+            models: &[],
+            execute: &Serial,
+            tuning: &Tuning::MEASURED,
+        };
+        let skeleton = Skeleton::lay(&analyzer, &strata, dl).unwrap();
+        let ends = skeleton.edges().iter().flat_map(|e| e.landmarks());
+        ends.filter(|&end| end == Landmark::new(0)).count()
+    }
+
+    #[test]
+    fn a_boundary_ends_in_its_point_over_a_gap_or_a_stub() {
+        let whole = ray(2.0, &[[0.2, 6.0]]);
+        let one = |boundary: Vec<Place>| joined(&[whole.clone(), boundary], &[], 1.0);
+        assert_eq!(one(ray(0.0, &[[0.2, 6.0]])), 2);
+        // A gap that the labels of the fit do not reach over.
+        assert_eq!(one(ray(0.0, &[[2.6, 6.0]])), 2);
+        // Few points in the gap, too few for a landmark of their own; one is enough.
+        assert_eq!(one(ray(0.0, &[[0.3, 0.8], [2.4, 6.0]])), 2);
+        assert_eq!(one(ray(0.0, &[[0.6, 0.6], [2.4, 6.0]])), 2);
+        // Farther away it is another boundary.
+        assert_eq!(one(ray(0.0, &[[3.2, 6.0]])), 1);
+        assert_eq!(one(ray(0.0, &[[0.3, 0.8], [3.2, 6.0]])), 1);
+    }
+
+    #[test]
+    fn other_boundaries_stay_as_they_are() {
+        let whole = ray(2.0, &[[0.2, 6.0]]);
+        // One that the fit does not count ends nearby.
+        assert_eq!(joined(&[whole.clone()], &ray(0.0, &[[2.0, 6.0]]), 1.0), 1);
+        // One that is counted leaves to the right, as its stub says: what ends above and to the left is another.
+        let stub = ray(0.0, &[[0.3, 0.8]]);
+        let left = ray(1.2, &[[2.5, 6.0]]);
+        assert_eq!(joined(&[whole.clone(), stub], &left, 1.0), 1);
+        // One that passes by does not come from the point.
+        let past = |k: u32| [2.2 - 0.03 * f64::from(k), 0.1 * f64::from(k)];
+        let past: Vec<Place> = (0..25).map(past).collect();
+        assert_eq!(joined(&[whole, Vec::new()], &past, 1.0), 1);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Up to four boundaries at right angles, each with a gap at its point and with a stub or without one: those end
+        /// in the point that begin no farther from it than chains are joined over.
+        #[test]
+        fn boundaries_are_joined_whose_gap_is_not_too_wide(
+            arms in proptest::collection::vec((0.2..6.0f64, any::<bool>()), 1..=4),
+            turn in 0.0..4.0f64,
+            dl in 0.01..100.0f64,
+        ) {
+            let boundary = |(k, &(gap, stub)): (usize, &(f64, bool))| {
+                let stub = (stub && gap > REACH).then_some([0.3, 0.8]);
+                let stretches = stub.into_iter().chain([[gap, gap + 4.0]]);
+                ray(turn + k as f64, &stretches.collect::<Vec<_>>())
+            };
+            let boundaries: Vec<Vec<Place>> = arms.iter().enumerate().map(boundary).collect();
+            let limit = Tuning::MEASURED.skeleton.join;
+            prop_assume!(arms.iter().all(|x| (x.0 - limit).abs() > 1e-6));
+            let near = arms.iter().filter(|x| x.0 < limit).count();
+            prop_assert_eq!(joined(&boundaries, &[], dl), near);
+        }
+    }
+}
