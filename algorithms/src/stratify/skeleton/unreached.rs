@@ -246,7 +246,10 @@ mod tests {
     fn other_boundaries_stay_as_they_are() {
         let whole = ray(2.0, &[[0.2, 6.0]]);
         // One that the fit does not count ends nearby.
-        assert_eq!(joined(&[whole.clone()], &ray(0.0, &[[2.0, 6.0]]), 1.0), 1);
+        assert_eq!(
+            joined(std::slice::from_ref(&whole), &ray(0.0, &[[2.0, 6.0]]), 1.0),
+            1
+        );
         // One that is counted leaves to the right, as its stub says: what ends above and to the left is another.
         let stub = ray(0.0, &[[0.3, 0.8]]);
         let left = ray(1.2, &[[2.5, 6.0]]);
