@@ -35,7 +35,12 @@ impl CurveGraph {
             unreached: Vec::new(),
         };
         out.join_corners(skeleton, ground);
-        out.bridge(ground);
+        if out.bridge(ground) {
+            // What was too short to end at a corner may go on beyond a gap.
+            out.leave_corners();
+            out.join_corners(skeleton, ground);
+        }
+        out.join_unreached(skeleton, ground);
         out
     }
 
@@ -55,11 +60,8 @@ impl CurveGraph {
         }
         let reach = ground.tuning.join * ground.dl;
         for &corner in skeleton.corner_rows() {
-            let stub: Vec<bool> = (self.parts.iter())
-                .map(|members| {
-                    let near = |&k: &usize| ground.distance(corner, rows[k]) < ground.dl;
-                    members.iter().all(near)
-                })
+            let stub: Vec<bool> = (0..self.parts.len())
+                .map(|part| self.is_stub(ground, corner, part))
                 .collect();
             let mut branches: Vec<(Label, usize, f64)> = Vec::new();
             for (k, &row) in rows.iter().enumerate() {
@@ -89,6 +91,27 @@ impl CurveGraph {
         }
     }
 
+    /// Whether a part does not reach farther than dl from a corner.
+    pub(super) fn is_stub<S: Scalar>(
+        &self,
+        ground: &Ground<'_, '_, S>,
+        corner: Row,
+        part: usize,
+    ) -> bool {
+        let near = |&k: &usize| ground.distance(corner, self.nodes.rows[k]) < ground.dl;
+        self.parts[part].iter().all(near)
+    }
+
+    /// Takes the corners away.
+    fn leave_corners(&mut self) {
+        let first_corner = self.first_corner();
+        self.links.truncate(first_corner);
+        for links in &mut self.links {
+            links.retain(|x| x.0 < first_corner);
+        }
+        self.unreached.clear();
+    }
+
     /// The branch of a corner that a node is on; `None` for a node that is on none. Where the fit about the corner tells no
     /// branches apart, all are one.
     fn branch(&self, skeleton: &Skeleton, corner: Row, node: usize) -> Option<Label> {
@@ -105,8 +128,8 @@ impl CurveGraph {
         }
     }
 
-    /// Joins ends that point at each other over a gap of the points.
-    fn bridge<S: Scalar>(&mut self, ground: &Ground<'_, '_, S>) {
+    /// Joins ends that point at each other over a gap of the points, and says whether there are any.
+    fn bridge<S: Scalar>(&mut self, ground: &Ground<'_, '_, S>) -> bool {
         let rows = &self.nodes.rows;
         let first_corner = rows.len();
         let distance = |a: usize, b: usize| ground.distance(rows[a], rows[b]);
@@ -128,9 +151,11 @@ impl CurveGraph {
             self.links[a].push((b, d));
             self.links[b].push((a, d));
         }
-        if !bridges.is_empty() {
-            self.parts = components(&self.links, first_corner);
+        if bridges.is_empty() {
+            return false;
         }
+        self.parts = components(&self.links, first_corner);
+        true
     }
 }
 

@@ -12,6 +12,7 @@ mod lay;
 mod nodes;
 mod sweep;
 mod thin;
+mod unreached;
 
 use super::analysis::Analyzer;
 use super::atlas::{Atlas, FitId, Reference};
