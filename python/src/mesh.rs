@@ -56,22 +56,22 @@ pub fn check(
     mesh: MeshArrays<'_>,
     metadata: &str,
     points: Option<PyReadonlyArray2<'_, f64>>,
-    asked: Known,
+    known: Known,
 ) -> PyResult<String> {
     let mesh = mesh.mesh()?;
     let metadata: Value = serde_json::from_str(metadata).map_err(|error| bad_value(&error))?;
     let origin = Origin::of(&metadata).map_err(|why| bad_value(&why))?;
     let points = points.as_ref().map(cloud).transpose()?;
     let asked = Asked {
-        dl: asked.dl,
-        closed: asked.closed,
-        prepare: asked.prepare,
-        least_hole: asked.least_hole,
+        dl: known.dl,
+        closed: known.closed,
+        prepare: known.prepare,
+        least_hole: known.least_hole,
     };
     let (options, measuring) = (origin.certificate(&asked), origin.measuring(&asked));
-    let known = py.detach(|| checked(&mesh, points.as_ref(), &options, &measuring));
-    let known = known.map_err(|error| bad_value(&error))?;
-    Ok(known.to_string())
+    let found = py.detach(|| checked(&mesh, points.as_ref(), &options, &measuring));
+    let found = found.map_err(|error| bad_value(&error))?;
+    Ok(found.to_string())
 }
 
 fn checked(
