@@ -68,6 +68,8 @@ const FEW_PLACES: usize = 3;
 pub enum End {
     /// With a verified mesh.
     Verified(Topology),
+    /// With a mesh that passes by itself, and covers a gap that an earlier attempt found in the points.
+    Denied(Topology),
     /// With a mesh that is not verified.
     Refused {
         /// Stars and cells that stayed open.
@@ -99,6 +101,14 @@ impl End {
                     .collect(),
             },
             Err(error) => Self::Failed(error.to_string()),
+        }
+    }
+
+    /// The same, where earlier attempts speak against the mesh.
+    pub(super) fn denied(self) -> Self {
+        match self {
+            Self::Verified(topology) => Self::Denied(topology),
+            other => other,
         }
     }
 
@@ -143,13 +153,14 @@ impl End {
     }
 
     /// How far an attempt came: the larger, the farther. Among meshes that are not verified those with
-    /// fewer places to complain about; a hole that is shown with few edges is less wrong than anything else.
+    /// fewer places to complain about; a hole that is shown with few edges is less wrong than anything else. One that covers what is
+    /// known to be a gap says nothing of its own.
     pub(super) fn rank(&self) -> (u8, Reverse<usize>, Reverse<usize>) {
         let small = self.small_holes();
         let step = match self {
             Self::Verified(_) => 2,
             Self::Refused { .. } => 1,
-            Self::Failed(_) => 0,
+            Self::Denied(_) | Self::Failed(_) => 0,
         };
         (step, Reverse(self.places() - small), Reverse(small))
     }

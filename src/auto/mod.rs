@@ -6,6 +6,7 @@
 mod alone;
 mod attempt;
 mod density;
+mod evidence;
 mod input;
 mod measured;
 mod moves;

@@ -9,6 +9,7 @@ mod next;
 use super::Auto;
 use super::attempt::{Attempt, End, Topology};
 use super::density::Density;
+use super::evidence::Evidence;
 use super::input::Input;
 use super::needs::gap_needs;
 use super::pinned::Pinned;
@@ -99,6 +100,8 @@ struct Progress<'a> {
     symptoms: Vec<Option<Symptom>>,
     /// The separation below which each would have left the gaps of the points open, where it did not.
     needed: Vec<Option<f64>>,
+    /// The gaps of the points that they found.
+    evidence: Evidence,
     /// The attempt that came farthest.
     best: Option<(usize, Result<Outcome, Error>)>,
     /// What was done about outliers and noise in that attempt.
@@ -165,6 +168,7 @@ impl Auto {
             attempts: Vec::new(),
             symptoms: Vec::new(),
             needed: Vec::new(),
+            evidence: Evidence::default(),
             best: None,
             preparation: None,
             began: Instant::now(),
@@ -228,8 +232,20 @@ impl Progress<'_> {
         {
             return Err(error.clone());
         }
-        let end = End::of(&outcome);
-        let symptom = (!end.is_verified()).then(|| Symptom::of(&outcome));
+        let end = match &outcome {
+            Ok(found) if found.is_verified() && self.evidence.speaks_against(&found.mesh) => {
+                End::of(&outcome).denied()
+            }
+            _ => End::of(&outcome),
+        };
+        let symptom = match &end {
+            End::Verified(_) => None,
+            End::Denied(_) => Some(Symptom::Gaps),
+            _ => Some(Symptom::of(&outcome)),
+        };
+        if let Ok(found) = &outcome {
+            self.evidence.keep(found);
+        }
         self.needed.push(gap_needs(symptom, &outcome));
         let nearer = |best: &(usize, _)| end.rank() > self.attempts[best.0].end.rank();
         if self.best.as_ref().is_none_or(nearer) {

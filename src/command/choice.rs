@@ -51,6 +51,11 @@ fn tried((number, attempt): (usize, &Attempt)) -> String {
     };
     let end = match &attempt.end {
         End::Verified(topology) => format!("verified, {topology}"),
+        End::Denied(topology) => {
+            format!(
+                "refused, it covers a gap of the points that an earlier attempt found, {topology}"
+            )
+        }
         End::Refused {
             open,
             violations,

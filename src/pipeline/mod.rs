@@ -154,9 +154,11 @@ impl Pipeline {
         self
     }
 
-    /// The same with a certificate that calls a gap or a separation in the points no chance so many times sooner.
+    /// The same with a certificate that calls a gap or a separation in the points no chance so many times sooner, and an end
+    /// of a curve one so many times later.
     pub(crate) fn stricter(mut self, times: usize) -> Self {
         self.parts.limits.significance *= times as f64;
+        self.parts.limits.loose_end /= times as f64;
         self
     }
 

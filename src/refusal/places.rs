@@ -94,6 +94,7 @@ fn of_violation<'a>(
         | ViolationKind::Pinch
         | ViolationKind::TouchingParts => Some(FaultKind::Unclaimed),
         ViolationKind::BridgedGap | ViolationKind::BareStretch => Some(FaultKind::Gap),
+        ViolationKind::UndecidedEnd => Some(FaultKind::TooFewPoints),
         ViolationKind::MergedSheets => Some(FaultKind::Merged),
         _ => None,
     };

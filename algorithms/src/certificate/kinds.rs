@@ -108,6 +108,9 @@ pub enum ViolationKind {
     /// A stretch of a curve without points that chance does not explain: there are two curves, or the curve ends before
     /// what the mesh joins it to.
     BareStretch,
+    /// The end of a curve that points at something so near that chance may have left out the points before a joint: the curve
+    /// may end there or be joined to it.
+    UndecidedEnd,
     /// Two sheets of points, one over the other, that the mesh takes for one.
     MergedSheets,
     /// Vertices off the points of a sheet at them.
@@ -133,9 +136,8 @@ impl ViolationKind {
             ZeroArea | Fold | BareFold | CurveFold | Stacked | SelfIntersection | NearCrossing
             | Entangled => Level::Geometry,
             UncoveredPoints | MeshFarFromPoints | MeshOffPoints | UnusedLandmarks => Level::Cover,
-            BridgedGap | BareStretch | MergedSheets | VertexOffPoints | TouchingParts => {
-                Level::Faithful
-            }
+            BridgedGap | BareStretch | UndecidedEnd | MergedSheets | VertexOffPoints
+            | TouchingParts => Level::Faithful,
             NeedleTriangle => Level::Quality,
         }
     }
@@ -176,6 +178,7 @@ impl ViolationKind {
             UnusedLandmarks => "landmarks not in the mesh",
             BridgedGap => "gaps of the points that the mesh covers",
             BareStretch => "edges of curves where the points leave a gap",
+            UndecidedEnd => "ends of curves that may be joined to what is ahead of them",
             MergedSheets => "vertices where two sheets of points are one in the mesh",
             VertexOffPoints => "vertices off the points around them",
             TouchingParts => "places where parts of the mesh touch by their points",
@@ -249,6 +252,9 @@ impl ViolationKind {
             BridgedGap => "decrease dl, so that the mesh leaves the gap open",
             BareStretch => {
                 "decrease dl and eps, so that the mesh leaves the gap open; or give more points of the curve"
+            }
+            UndecidedEnd => {
+                "give more points of the curve at its end: it may stop there, or go on to what is ahead"
             }
             MergedSheets => "decrease dl and eps below the distance of the sheets",
             TouchingParts => {

@@ -58,7 +58,7 @@ pub use crosscap_core::{Link, LinkKind};
 pub use distance_report::DistanceReport;
 pub use edges::EdgeReport;
 pub use evidence::{evidence_places, evidence_rows};
-pub use faithful::{Covered, FaithfulReport, Gap, Merged, Offset, Stretch};
+pub use faithful::{Covered, FaithfulReport, Gap, LooseEnd, Merged, Offset, Stretch};
 pub use geometry_report::GeometryReport;
 pub use heights::distances_to_mesh;
 pub use indices::IndexReport;
@@ -153,7 +153,8 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
     let search = feet
         .as_ref()
         .zip(ground.as_ref())
-        .map(|(feet, ground)| Search::new(mesh, &incidence, feet, ground, of));
+        .zip(points)
+        .map(|((feet, ground), points)| Search::new(mesh, &incidence, feet, ground, points, of));
     let opening = options
         .faithful
         .then_some(())

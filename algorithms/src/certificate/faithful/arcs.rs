@@ -1,5 +1,6 @@
 //! Stretches of curves without points: a curve in two, and a curve that ends before what the mesh joins it to.
 
+use super::beside::{Side, spacing};
 use super::chance;
 use super::evenness::Evenness;
 use super::footprints::Footprints;
@@ -8,8 +9,6 @@ use crosscap_core::{Mesh, squared_distance};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Points on each side of a stretch that their spacing is taken from.
-const BESIDE: usize = 16;
 /// A curve is joined to a sheet or to other curves in few places, and each says more than a place along it: a stretch
 /// without points there is no chance at this multiple of the significance.
 const JOINTS: f64 = 10.0;
@@ -43,25 +42,23 @@ impl Stretch {
 }
 
 /// A curve of the mesh from one end, or one place where more meets, to the next.
-struct Arc {
+pub(super) struct Arc {
     /// Its vertices in order; the first is the last of a loop.
-    vertices: Vec<u32>,
+    pub vertices: Vec<u32>,
     /// How far along every vertex is.
     along: Vec<f64>,
     /// Where the points are along it, increasing.
-    feet: Vec<f64>,
+    pub feet: Vec<f64>,
     /// Whether more is at the first and the last vertex.
-    joined: [bool; 2],
+    pub joined: [bool; 2],
     /// Whether it is a loop that nothing else is at.
-    closed: bool,
+    pub closed: bool,
 }
 
 /// All stretches between points of the curves without triangles, the least likely first.
 ///
 /// O(p log p) for p points on curves.
-pub(super) fn stretches(mesh: &Mesh, incidence: &Incidence, feet: &Footprints) -> Vec<Stretch> {
-    let arcs = arcs(mesh, incidence, feet);
-    let even = evenness(&arcs);
+pub(super) fn stretches(mesh: &Mesh, arcs: &[Arc], even: &Evenness) -> Vec<Stretch> {
     let points: usize = arcs.iter().map(|arc| arc.feet.len()).sum();
     let joints = arcs
         .iter()
@@ -69,12 +66,12 @@ pub(super) fn stretches(mesh: &Mesh, incidence: &Incidence, feet: &Footprints) -
         .filter(|&j| j)
         .count();
     let mut all = Vec::new();
-    for arc in &arcs {
+    for arc in arcs {
         for k in 0..=arc.feet.len() {
             let Some((from, to, joint)) = arc.between(k) else {
                 continue;
             };
-            let Some((spacing, counted)) = arc.spacing(k) else {
+            let Some((spacing, counted)) = spacing(&arc.sides(k, arcs)) else {
                 continue;
             };
             let length = (to - from) / spacing;
@@ -98,11 +95,11 @@ pub(super) fn stretches(mesh: &Mesh, incidence: &Incidence, feet: &Footprints) -
 
 /// How even the points along the curves are: the spacings of a random sample have an exponential law, as the empty discs of a
 /// surface.
-fn evenness(arcs: &[Arc]) -> Evenness {
+pub(super) fn evenness(arcs: &[Arc]) -> Evenness {
     let mut lengths = Vec::new();
     for arc in arcs {
         for k in 1..arc.feet.len() {
-            if let Some((spacing, _)) = arc.spacing(k) {
+            if let Some((spacing, _)) = spacing(&arc.sides(k, arcs)) {
                 lengths.push((arc.feet[k] - arc.feet[k - 1]) / spacing);
             }
         }
@@ -122,7 +119,7 @@ impl Arc {
         }
     }
 
-    fn last(&self) -> u32 {
+    pub fn last(&self) -> u32 {
         self.vertices[self.vertices.len() - 1]
     }
 
@@ -163,17 +160,40 @@ impl Arc {
         }
     }
 
-    /// Mean spacing of the points on both sides of the stretch before foot number `k`, and how many spacings it is taken
-    /// from.
-    fn spacing(&self, k: usize) -> Option<(f64, f64)> {
-        let (low, high) = (k.saturating_sub(BESIDE), (k + BESIDE).min(self.feet.len()));
-        let length = |range: &[f64]| match range {
-            [first, .., last] => (last - first, range.len() as f64 - 1.0),
-            _ => (0.0, 0.0),
+    /// The points on both sides of the stretch before foot number `k`; beyond a joint those of the other curves there.
+    fn sides<'a>(&'a self, k: usize, arcs: &'a [Self]) -> Vec<Side<'a>> {
+        let (before, after) = self.feet.split_at(k);
+        let mut sides = vec![Side::before(before), Side::after(after)];
+        let joint = if k == 0 && self.joined[0] {
+            self.vertices[0]
+        } else if k == self.feet.len() && self.joined[1] {
+            self.last()
+        } else {
+            return sides;
         };
-        let (before, after) = (length(&self.feet[low..k]), length(&self.feet[k..high]));
-        let (length, count) = (before.0 + after.0, before.1 + after.1);
-        (length > 0.0).then(|| (length / count, count))
+        for arc in arcs.iter().filter(|arc| !std::ptr::eq(*arc, self)) {
+            if arc.vertices[0] == joint {
+                sides.push(Side::after(&arc.feet));
+            }
+            if arc.last() == joint {
+                sides.push(Side::before(&arc.feet));
+            }
+        }
+        sides
+    }
+
+    /// Leaves out the points beyond an end that nothing is joined to, but one: they all stand at the end, and how far
+    /// from each other they are is not known.
+    fn trim(&mut self) {
+        let (low, high) = (0.0, self.along[self.along.len() - 1]);
+        if !self.joined[0] {
+            let beyond = self.feet.partition_point(|&x| x <= low);
+            self.feet.drain(..beyond.saturating_sub(1));
+        }
+        if !self.joined[1] {
+            let within = self.feet.partition_point(|&x| x < high);
+            self.feet.truncate(within + 1);
+        }
     }
 
     /// Edge and place so far along; before the start of a loop is its end.
@@ -200,7 +220,7 @@ impl Arc {
 }
 
 /// The edges without triangles as arcs, each with the points that stand on it.
-fn arcs(mesh: &Mesh, incidence: &Incidence, feet: &Footprints) -> Vec<Arc> {
+pub(super) fn arcs(mesh: &Mesh, incidence: &Incidence, feet: &Footprints) -> Vec<Arc> {
     let bare = incidence.bare_edges();
     let mut at_vertex: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for (k, ends) in bare.iter().enumerate() {
@@ -237,6 +257,9 @@ fn arcs(mesh: &Mesh, incidence: &Incidence, feet: &Footprints) -> Vec<Arc> {
                 let ends = [start, arc.last()];
                 arc.closed = inner(start);
                 arc.joined = ends.map(|v| at_vertex[&v].len() > 1 && !inner(v) || !alone(v));
+                if !arc.closed {
+                    arc.trim();
+                }
                 arcs.push(arc);
             }
         }

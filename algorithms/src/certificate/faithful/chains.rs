@@ -13,6 +13,9 @@ use crate::certificate::geometry::corners;
 const MEASURED: usize = 12;
 /// Tiles hang together when their middles are this near, in spacings.
 const TOGETHER: f64 = 1.1 * TILE;
+/// Tiles at least so far from the points, beside that of the chain which is farthest, are deep inside of the gap.
+const DEEP: f64 = 0.75;
+
 impl Search<'_> {
     /// The chains of tiles of every level, as gaps.
     pub(super) fn chains(&self, tiles: &[Empty], middles: &[f64], gaps: &mut Vec<Gap>) {
@@ -85,6 +88,8 @@ impl Search<'_> {
             / chain.len() as f64;
         let density = found.density;
         let (away, end) = self.distances(at(widest));
+        let deepest = tiles[widest as usize].away;
+        let deep = |k: &&u32| tiles[**k as usize].away >= DEEP * deepest;
         let gap = Gap {
             width: 2.0 * away.min(end) * density.sqrt(),
             size: 2.0 * away.min(end),
@@ -93,6 +98,10 @@ impl Search<'_> {
             together: 1,
             triangle,
             place: at(widest).to_vec(),
+            inner: (chain.iter().filter(deep))
+                .flat_map(|&k| at(k).iter().copied())
+                .collect(),
+            depth: DEEP * away.min(end),
         };
         (gap, found.counted, (density / own).sqrt())
     }

@@ -39,6 +39,12 @@ pub struct Gap {
     pub triangle: u32,
     /// Its middle.
     pub place: Vec<f64>,
+    /// Places deep inside of it, one after the other: the middle of a disc, the line amid a slit; none at a rim.
+    #[serde(skip)]
+    pub inner: Vec<f64>,
+    /// The least distance of these to the points and to the end of the mesh, unit of the data.
+    #[serde(skip)]
+    pub depth: f64,
 }
 
 /// A small part of the mesh that is far from the points.
@@ -126,16 +132,28 @@ impl Search<'_> {
         let away = away.min(end);
         let inside = |p: &[f64]| squared_distance(p, place) < away * away;
         let found = self.expected_about(tile.triangle, place, away, away / tile.away, &inside);
+        let measure =
+            |found: &Expected| chance::known(self.even.random(found.points), found.counted);
+        let on_mesh = (measure(&found), away, found);
+        let in_points = (!self.varies)
+            .then(|| self.disc_in_points(tile.triangle, place, away, away / tile.away))
+            .flatten()
+            .map(|disc| (measure(&disc.expected), disc.radius, disc.expected));
+        let (measure, radius, found) = match in_points {
+            Some(other) if other.0 > on_mesh.0 => other,
+            _ => on_mesh,
+        };
         let gap = Gap {
-            width: 2.0 * away * found.density.sqrt(),
-            size: 2.0 * away,
+            width: 2.0 * radius * found.density.sqrt(),
+            size: 2.0 * radius,
             expected: found.points,
             p: 1.0,
             together: 1,
             triangle: tile.triangle,
             place: place.to_vec(),
+            inner: place.to_vec(),
+            depth: away,
         };
-        let measure = chance::known(self.even.random(found.points), found.counted);
         (gap, measure)
     }
 

@@ -111,7 +111,7 @@ fn open_sides(mesh: &Mesh, incidence: &Incidence) -> Vec<u8> {
 
 /// Weights of the corners at the place of a triangle that is nearest to a point; the triangle may
 /// be an edge whose end is named twice.
-fn nearest_weights(point: &[f64], [a, b, c]: [&[f64]; 3]) -> [f64; 3] {
+pub(super) fn nearest_weights(point: &[f64], [a, b, c]: [&[f64]; 3]) -> [f64; 3] {
     let products = Products::of(point, a, [a, b, c]);
     if let Some([s, t]) = products.inside() {
         return [1.0 - (s + t), s, t];

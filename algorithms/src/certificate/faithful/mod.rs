@@ -6,6 +6,7 @@
 
 mod arcs;
 mod around;
+mod beside;
 mod chains;
 mod chance;
 mod covered;
@@ -15,6 +16,8 @@ mod evenness;
 pub(super) mod footprints;
 mod gaps;
 pub(super) mod ground;
+mod in_points;
+mod loose;
 mod nearby;
 pub(super) mod opening;
 mod overlay;
@@ -35,6 +38,7 @@ mod tests;
 pub use arcs::Stretch;
 pub use covered::Covered;
 pub use discs::Gap;
+pub use loose::LooseEnd;
 pub(super) use search::Search;
 pub use sheets::{Merged, Offset};
 
@@ -62,12 +66,17 @@ pub struct FaithfulReport {
     /// Width of the widest of the empty regions that are told as violations, in local spacings.
     #[serde(skip)]
     pub widest_bridged: Option<f64>,
+    /// These regions, the least likely first.
+    #[serde(skip)]
+    pub bridged: Vec<Gap>,
     /// Gaps that are no chance, but narrower than the narrowest hole that the surface is said to have; none where nothing was
     /// said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub covered: Option<Covered>,
     /// The least likely stretch of a curve without points.
     pub largest_stretch: Option<Stretch>,
+    /// The end of a curve that most likely is joined to what is ahead of it, where there is any.
+    pub loose_end: Option<LooseEnd>,
     /// The least likely gap in the heights of points over one sheet of the mesh, where there is any.
     pub merged: Option<Merged>,
     /// The vertex that is worst off the points around it.
@@ -112,9 +121,12 @@ pub(super) fn check(
         options.limits.least_hole,
         &mut report,
     );
-    let stretches = arcs::stretches(search.mesh, search.incidence, search.feet);
-    stretches_told(stretches, &mut report);
+    let arcs = arcs::arcs(search.mesh, search.incidence, search.feet);
+    let even = arcs::evenness(&arcs);
+    stretches_told(arcs::stretches(search.mesh, &arcs, &even), &mut report);
     if let Some(points) = options.points {
+        let ends = loose::loose_ends(search, points, &arcs, &even);
+        ends_told(search.mesh, ends, options.limits.loose_end, &mut report);
         let found = sheets::look(search, points, significance, options.limits.vertex_offset);
         sheets_told(search.mesh, found, &mut report);
         parts_told(search.mesh, &parts::touching(search, points), &mut report);
@@ -132,6 +144,7 @@ fn gaps_told(gaps: Vec<Gap>, least_hole: f64, report: &mut FaithfulReport) {
     }
     let widths = bridged.iter().map(|gap| gap.width);
     report.widest_bridged = widths.max_by(f64::total_cmp);
+    report.bridged = bridged.iter().map(|&gap| gap.clone()).collect();
     if let Some(worst) = bridged.first() {
         let triangles = covered::places(&bridged).into_iter();
         let places = triangles.map(Place::Triangle).collect();
@@ -192,6 +205,25 @@ fn stretches_told(stretches: Vec<Stretch>, report: &mut FaithfulReport) {
         report.violations.extend(told);
     }
     report.largest_stretch = stretches.into_iter().next();
+}
+
+/// Ends of curves that may be joined to what is ahead of them, as a figure and a violation.
+fn ends_told(mesh: &Mesh, ends: Vec<LooseEnd>, limit: f64, report: &mut FaithfulReport) {
+    let undecided = ends.iter().filter(|end| end.p > limit);
+    let places: Vec<Place> = undecided.map(|end| Place::Vertex(end.vertex)).collect();
+    if let Some(worst) = ends.first().filter(|end| end.p > limit) {
+        let detail = format!(
+            "the worst leaves {:.1} times the distance of its points ({:.4}) to what is ahead of it; in that many chance \
+             leaves as much with p = {:.1e}, and a curve that is joined is held to be none at {:.1e}",
+            worst.length, worst.size, worst.p, limit
+        );
+        let violation = Violation::at(ViolationKind::UndecidedEnd, places, |place| {
+            super::coordinates(mesh, place)
+        });
+        let told = violation.map(|v| v.measured(worst.p, limit).detailed(detail));
+        report.violations.extend(told);
+    }
+    report.loose_end = ends.into_iter().next();
 }
 
 /// What was found about sheets and places, as figures and violations.

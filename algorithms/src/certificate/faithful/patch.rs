@@ -31,6 +31,9 @@ pub(super) struct Patch {
     rows: Vec<f64>,
     heights: Vec<f64>,
     axes: [Vec<f64>; 2],
+    /// The terms of every coordinate of the height, where the plane is in units of `scale`.
+    height: Vec<[f64; TERMS]>,
+    scale: f64,
 }
 
 impl Patch {
@@ -55,6 +58,24 @@ impl Patch {
         }
         self.flatten(n);
         self.solve(n)
+    }
+
+    /// The place of the patch over a place of its plane, from the origin.
+    pub fn place(&self, at: [f64; 2]) -> Vec<f64> {
+        let [u, v] = at;
+        let terms = terms(at.map(|x| x / self.scale));
+        let height = |c: &[f64; TERMS]| (0..TERMS).map(|i| terms[i] * c[i]).sum::<f64>();
+        let flat = self.axes[0].iter().zip(&self.axes[1]);
+        flat.zip(&self.height)
+            .map(|((a, b), c)| u * a + v * b + height(c))
+            .collect()
+    }
+
+    /// How much its height bends: the root of the sum of the squares of all second derivatives, 1.4 / r for a sphere of radius r.
+    pub fn bend(&self) -> f64 {
+        let square = |c: &[f64; TERMS]| 4.0 * (c[3] * c[3] + c[5] * c[5]) + 2.0 * c[4] * c[4];
+        let sum: f64 = self.height.iter().map(square).sum();
+        sum.sqrt() / (self.scale * self.scale)
     }
 
     /// The plane of largest spread, about the mean of the points.
@@ -170,6 +191,8 @@ impl Patch {
             }
         }
         self.scatter = (sum / (self.flat.len() - TERMS) as f64).sqrt();
+        right.truncate(n);
+        (self.height, self.scale) = (right, scale);
         self.project(n);
         true
     }
@@ -266,6 +289,12 @@ mod tests {
         assert!(patch.fit(&[0.0, 0.0, 0.3, -0.4], rows.iter().map(|r| &r[..])));
         assert!(patch.scatter < 0.05, "{}", patch.scatter);
         assert!((patch.offset - 0.5).abs() < 0.05, "{}", patch.offset);
+        let over = patch.place([0.1, 0.2]);
+        let at = [over[0], over[1], over[2] + 0.3, over[3] - 0.4];
+        let [u, v] = [at[0], at[1]];
+        assert!((at[2] - (0.3 * u * u - 0.1 * u * v)).abs() < 0.05, "{at:?}");
+        assert!((at[3] - 0.2 * v * v).abs() < 0.05, "{at:?}");
+        assert!((patch.bend() - 0.735).abs() < 0.1, "{}", patch.bend());
         let line: Vec<[f64; 3]> = (0..30).map(|k| [f64::from(k), 0.0, 0.0]).collect();
         assert!(!patch.fit(&[0.0; 3], line.iter().map(|r| &r[..])));
         assert!(!patch.fit(&[0.0; 3], line[..5].iter().map(|r| &r[..])));

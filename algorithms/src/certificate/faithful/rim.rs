@@ -99,6 +99,8 @@ impl Search<'_> {
             together: 1,
             triangle: end.triangle,
             place: end.place.clone(),
+            inner: Vec::new(),
+            depth: 0.0,
         }
     }
 

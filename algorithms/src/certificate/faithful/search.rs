@@ -8,7 +8,7 @@ use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
 use crate::certificate::incidence::Incidence;
 use crate::certificate::quality::{median, quantile};
-use crosscap_core::{Mesh, squared_distance};
+use crosscap_core::{Mesh, PointCloud, squared_distance};
 use std::f64::consts::PI;
 
 /// Places of the mesh that the evenness is read from.
@@ -33,6 +33,8 @@ pub(in crate::certificate) struct Search<'a> {
     pub incidence: &'a Incidence,
     pub feet: &'a Footprints,
     pub ground: &'a Ground,
+    /// The points themselves.
+    pub(super) cloud: &'a PointCloud<f64>,
     /// Which points are on which triangle.
     pub(super) standing: Standing,
     /// The points that stand on triangles, by their positions among the feet, and the tree of their places.
@@ -57,6 +59,7 @@ impl<'a> Search<'a> {
         incidence: &'a Incidence,
         feet: &'a Footprints,
         ground: &'a Ground,
+        cloud: &'a PointCloud<f64>,
         of: usize,
     ) -> Self {
         let width = mesh.vertices.dimension();
@@ -73,6 +76,7 @@ impl<'a> Search<'a> {
             incidence,
             feet,
             ground,
+            cloud,
             standing: Standing::new(count, feet),
             on_triangles,
             tree: BallTree::new(width, &spots),
