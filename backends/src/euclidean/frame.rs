@@ -48,30 +48,18 @@ impl Frame {
             axes: None,
         };
         if n > MOST_AXES {
-            frame.axes = Some(frame.principal_axes(cloud));
+            frame.axes = Some(principal_axes(&frame.sample(cloud)));
         }
         frame
     }
 
-    /// Leading principal axes by subspace iteration on a sample of the cloud. They are
-    /// orthonormal whatever the data are, and that is all that exactness needs.
-    fn principal_axes<S: Scalar>(&self, cloud: &PointCloud<S>) -> Vec<f64> {
-        let n = cloud.dimension();
+    /// Some points of the cloud, in the unit ball.
+    fn sample<S: Scalar>(&self, cloud: &PointCloud<S>) -> DMatrix<f64> {
         let stride = cloud.len().div_ceil(AXES_SAMPLE).max(1);
         let rows: Vec<usize> = (0..cloud.len()).step_by(stride).collect();
-        let sample = DMatrix::from_fn(rows.len(), n, |i, j| {
+        DMatrix::from_fn(rows.len(), cloud.dimension(), |i, j| {
             (cloud.point(rows[i])[j].as_f64() - self.mean[j]) * self.scale
-        });
-        // A fixed start that leans on no direction.
-        let mut axes = DMatrix::from_fn(n, MOST_AXES, |i, k| {
-            ((i + 1) as f64 * (k as f64 + 1.7)).cos()
-        });
-        axes = axes.qr().q();
-        for _ in 0..AXES_ROUNDS {
-            let projected = &sample * &axes;
-            axes = sample.tr_mul(&projected).qr().q();
-        }
-        axes.as_slice().to_vec()
+        })
     }
 
     /// Number of coordinates in the tree.
@@ -114,4 +102,19 @@ impl Frame {
         }
         all
     }
+}
+
+/// Leading principal axes of a sample by subspace iteration. They are orthonormal whatever the data are, and that is all that
+/// exactness needs.
+fn principal_axes(sample: &DMatrix<f64>) -> Vec<f64> {
+    // A fixed start that leans on no direction.
+    let mut axes = DMatrix::from_fn(sample.ncols(), MOST_AXES, |i, k| {
+        ((i + 1) as f64 * (k as f64 + 1.7)).cos()
+    });
+    axes = axes.qr().q();
+    for _ in 0..AXES_ROUNDS {
+        let projected = sample * &axes;
+        axes = sample.tr_mul(&projected).qr().q();
+    }
+    axes.as_slice().to_vec()
 }
