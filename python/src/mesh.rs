@@ -76,6 +76,7 @@ fn checked(
         certificate: &certificate,
         pieces: &pieces,
         creases: bends.as_ref(),
+        special_points: &[],
     };
     let mut known = Value::Object(findings.json(certificate.verdict().is_verified()));
     known["reasons"] = certificate.violations().map(violation).collect();
@@ -121,6 +122,7 @@ pub fn page(
             certificate: &certificate,
             pieces: &pieces,
             creases: None,
+            special_points: &[],
         };
         let mut scene = picture::scene(&title, &findings, &verdict, None)?;
         if let Some(points) = &points {

@@ -148,3 +148,39 @@ impl BookEndTuning {
         step: 0.6,
     };
 }
+
+/// When a corner of a boundary is believed. Lengths are in radii of the ball.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BoundaryCornerTuning {
+    /// Farthest that the corner is from the center.
+    pub reach: f64,
+    /// Least turn of the boundary at the corner, in radians: what turns less may be an ellipse.
+    pub turn: f64,
+    /// Greatest bend of the arms, half of their second derivative.
+    pub arm_bend: f64,
+    /// Greatest bend of a smooth boundary in its middle, half of the second derivative: 0.4 radii of curvature.
+    pub smooth_bend: f64,
+    /// A sixth of the greatest third derivative of a smooth boundary.
+    pub smooth_change: f64,
+    /// Points that would have to lie between the smooth boundary and the corner: a kink was ahead of a smooth boundary by up to 5 of them
+    /// on discs, where there is no corner.
+    pub missing: f64,
+    /// Most points that may be missing between the corner and the point nearest to it: so many are by chance in one of 50 places.
+    pub tip: f64,
+    /// A point off the boundary tells where it is up to this many ep.
+    pub witness: f64,
+}
+
+impl BoundaryCornerTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        reach: 0.7,
+        turn: 0.7,
+        arm_bend: 0.35,
+        smooth_bend: 1.25,
+        smooth_change: 0.5,
+        missing: 8.0,
+        tip: 4.0,
+        witness: 3.0,
+    };
+}

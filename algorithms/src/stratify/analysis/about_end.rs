@@ -138,7 +138,7 @@ impl<S: Scalar> Fitter<'_, S> {
         }
         own.sort_by_key(|x| x.0);
         let labels = own.iter().map(|x| (x.0, x.1)).collect();
-        let region = EndRegion::new([labels, beyond], fit, place.into(), reach);
+        let region = EndRegion::new([labels, beyond], fit, place.into(), reach, used);
         Some((region, own.into_iter().map(|x| x.2).collect()))
     }
 
