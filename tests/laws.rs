@@ -13,8 +13,8 @@ use crosscap_algorithms::metric::{
 };
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::{
-    BareCurve, Book, Boundary, BoundaryCorner, ConePoint, CurveOnSheet, CurveThroughSheet,
-    IsolatedCrossing, OneSheet, TriplePoint, TwoPlanes, YJunction,
+    BareCurve, Book, Boundary, ConePoint, CurveOnSheet, CurveThroughSheet, IsolatedCrossing,
+    OneSheet, TriplePoint, TwoPlanes, YJunction,
 };
 use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, MinimumCircumradius, Rules};
 use crosscap_algorithms::tuning::FrontTuning;
@@ -168,10 +168,6 @@ law_tests! {
         settings: settings();
     // The curve is as sharp as the sample: with fewer points the outermost ones leave wide notches.
     mod boundary = model(&Boundary::new(0.1, 0.05).unwrap(), &of(400..=800, &instances::boundary)),
-        settings: settings();
-    // The corner is told by the points that are not there.
-    mod boundary_corner =
-        model(&BoundaryCorner::new(0.1, 0.05).unwrap(), &of(500..=900, &instances::boundary_corner)),
         settings: settings();
     mod y_junction =
         model(&YJunction::new(0.1, 0.05).unwrap(), &Instances::new(&instances::y_junction)),

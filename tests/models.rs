@@ -19,7 +19,7 @@ struct Case {
     links: &'static [(LinkKind, Option<usize>)],
 }
 
-const CASES: [Case; 15] = [
+const CASES: [Case; 17] = [
     Case {
         surface: "three_spheres",
         points: 60_000,
@@ -163,6 +163,24 @@ const CASES: [Case; 15] = [
         models: &ModelName::AUTO,
         betti: [1, 0, 1],
         links: &[(LinkKind::IsolatedCrossing, Some(4)), (LinkKind::Arc, None)],
+    },
+    Case {
+        surface: "l_plate",
+        points: 2_500,
+        eps: 0.22,
+        dl: 0.11,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::Arc, None)],
+    },
+    Case {
+        surface: "star_plate",
+        points: 3_000,
+        eps: 0.14,
+        dl: 0.07,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::Arc, None)],
     },
 ];
 

@@ -50,15 +50,12 @@ impl Kink {
         let mut best: Option<Self> = None;
         let (mut middle, mut half) = (0.0, reach);
         for _ in 0..LEVELS {
-            for k in 0..TRIED {
-                let place = middle + half * (2.0 * k as f64 / (TRIED - 1) as f64 - 1.0);
-                let Some(found) = Self::at_place(points, place, bend) else {
-                    continue;
-                };
-                if place.abs() <= reach && best.is_none_or(|b| found.mean < b.mean) {
-                    best = Some(found);
-                }
-            }
+            let step = |k: usize| half * (2.0 * k as f64 / (TRIED - 1) as f64 - 1.0);
+            let tried = (0..TRIED).map(|k| middle + step(k));
+            let inside = tried.filter(|place| place.abs() <= reach);
+            let found = inside.filter_map(|place| Self::at_place(points, place, bend));
+            let both = best.into_iter().chain(found);
+            best = both.min_by(|a, b| a.mean.total_cmp(&b.mean));
             middle = best?.place;
             half *= LEFT;
         }

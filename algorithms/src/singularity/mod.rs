@@ -30,6 +30,7 @@ mod tolerance;
 mod triple_point;
 mod two_planes;
 mod vanishing;
+mod wedge;
 mod y_junction;
 pub use book::Book;
 pub use book_end::BookEnd;

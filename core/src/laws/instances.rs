@@ -214,28 +214,6 @@ pub fn boundary(draw: &mut Draw) -> Instance {
     half_planes(draw, &[0.0])
 }
 
-/// A plane sector of 50 to 100 degrees, or of 280 to 310: a surface whose boundary has a corner. The center is the corner. The stratum of the truth is
-/// the cell.
-pub fn boundary_corner(draw: &mut Draw) -> Instance {
-    use std::f64::consts::{FRAC_PI_2, TAU};
-    let reflex = draw.between(-1.0, 1.0) > 0.0;
-    let degrees = match reflex {
-        true => draw.between(280.0, 310.0),
-        false => draw.between(50.0, 100.0),
-    };
-    let angle = degrees.to_radians();
-    pieces(draw, 3, 1, |_, [x, y]| {
-        let (radius, turn) = (x.hypot(y), y.atan2(x) * angle / TAU);
-        let (sin, cos) = turn.sin_cos();
-        let to_arm = (angle / 2.0 - turn.abs()).min(FRAC_PI_2);
-        Placed {
-            point: vec![radius * cos, radius * sin, 0.0],
-            stratum: 0,
-            margin: radius * to_arm.sin(),
-        }
-    })
-}
-
 /// Three half planes on a line, any two of them at 100 degrees or more, as in soap films.
 pub fn y_junction(draw: &mut Draw) -> Instance {
     let spread = std::f64::consts::PI / 9.0;
@@ -388,11 +366,10 @@ mod tests {
 
     #[test]
     fn instances_are_what_they_say() {
-        let all: [(Generator, usize, usize); 11] = [
+        let all: [(Generator, usize, usize); 10] = [
             (flat_sheet, 3, 1),
             (two_planes, 3, 4),
             (boundary, 3, 1),
-            (boundary_corner, 3, 1),
             (y_junction, 3, 3),
             (t_junction, 3, 3),
             (triple_point, 3, 12),

@@ -80,7 +80,13 @@ impl<S: Scalar> Fitter<'_, S> {
         scratch: &mut Scratch<S>,
     ) -> Option<Result<Shown, Rejection>> {
         let engine = self.models[model].as_ref();
-        let view = self.view(ball.center, ball.radius, ball.radius + margin, scratch)?;
+        // A corner is told by the points that are missing: all of the ball count.
+        let most = match engine.finds_boundary() {
+            true => usize::MAX,
+            false => self.tuning.analysis.most_fitted,
+        };
+        let radii = [ball.radius, ball.radius + margin];
+        let view = self.view_of(ball.center, radii, most, scratch)?;
         if view.frame.spreads_beyond(engine.local_dimension()) {
             return None;
         }
