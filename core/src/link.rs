@@ -316,30 +316,19 @@ impl Link {
             )
         };
         let between = arcs - loops - leaves;
+        text += &match between {
+            0 => String::new(),
+            1 if inner.len() == 2 => " joined by an arc".into(),
+            _ => format!(" joined by {}", counted(between, "arc")),
+        };
         let mut with = Vec::new();
-        if between > 0 {
-            text += &if inner.len() == 2 {
-                format!(
-                    " joined by {}",
-                    if between == 1 {
-                        "an arc".into()
-                    } else {
-                        counted(between, "arc")
-                    }
-                )
-            } else {
-                format!(" joined by {}", counted(between, "arc"))
-            };
-        }
         if loops > 0 {
             with.push(counted(loops, "loop"));
         }
-        if leaves > 0 {
-            with.push(if leaves == 1 {
-                "a leaf".into()
-            } else {
-                format!("{} leaves", number(leaves))
-            });
+        match leaves {
+            0 => {}
+            1 => with.push("a leaf".into()),
+            _ => with.push(format!("{} leaves", number(leaves))),
         }
         if !with.is_empty() {
             text += &format!(" with {}", with.join(" and "));

@@ -12,7 +12,7 @@ use crosscap::MetricName;
 use crosscap::auto::{Measured, Measuring};
 use crosscap_algorithms::certificate::{CertificateOptions, SpecialPoint, certify};
 use crosscap_algorithms::homology::{LocalHomology, homology, local_homology};
-use crosscap_algorithms::pieces::{Pieces, pieces};
+use crosscap_algorithms::pieces::{Pieces, PiecesError, pieces};
 use crosscap_algorithms::prepare::PreparationSummary;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::files::{MESH_EXTENSIONS, MeshExtras, read_mesh, write_mesh};
@@ -84,12 +84,7 @@ pub struct Check {
 impl Check {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Failure> {
-        if let Some(path) = &self.normalization {
-            output::check(path, MESH_EXTENSIONS)?;
-            let mut inputs = vec![self.mesh.as_path()];
-            inputs.extend(self.points.as_deref());
-            output::distinct(&inputs, &[path])?;
-        }
+        self.check_outputs()?;
         let file = read_mesh(&self.mesh)?;
         let mesh = &file.mesh;
         let points = self.cloud(mesh)?;
@@ -125,15 +120,7 @@ impl Check {
         };
         let pieces = pieces(mesh);
         drop(progress);
-        if let Some(path) = &self.normalization {
-            let pieces = pieces.as_ref().map_err(|error| {
-                Failure::NotVerified(format!(
-                    "{}: the crossings cannot be taken apart: {error}",
-                    self.mesh.display()
-                ))
-            })?;
-            write_normalization(path, pieces)?;
-        }
+        self.normalize(&pieces)?;
         self.tell(
             &Findings {
                 mesh,
@@ -146,6 +133,31 @@ impl Check {
             local.as_ref(),
             preparation.as_ref(),
         )
+    }
+
+    /// Refuses an output of another kind, or that is an input, before the long part.
+    fn check_outputs(&self) -> Result<(), Failure> {
+        let Some(path) = &self.normalization else {
+            return Ok(());
+        };
+        output::check(path, MESH_EXTENSIONS)?;
+        let mut inputs = vec![self.mesh.as_path()];
+        inputs.extend(self.points.as_deref());
+        output::distinct(&inputs, &[path])
+    }
+
+    /// Writes the surface with its crossings taken apart where that is asked for.
+    fn normalize(&self, pieces: &Result<Pieces, PiecesError>) -> Result<(), Failure> {
+        let Some(path) = &self.normalization else {
+            return Ok(());
+        };
+        let pieces = pieces.as_ref().map_err(|error| {
+            Failure::NotVerified(format!(
+                "{}: the crossings cannot be taken apart: {error}",
+                self.mesh.display()
+            ))
+        })?;
+        write_normalization(path, pieces)
     }
 
     /// The points that the mesh was made from, in the space that it is in.

@@ -275,6 +275,15 @@ mod tests {
         all.fold(0.0, f64::max)
     }
 
+    /// All distances of points, for clouds of which one stands turned in its file: the shape is what is compared.
+    fn distances(cloud: &PointCloud<f64>) -> PointCloud<f64> {
+        let pairs = (0..cloud.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let all = pairs
+            .map(|(a, b)| cloud.squared_distance(a, b).sqrt())
+            .collect();
+        PointCloud::new(1, all).unwrap()
+    }
+
     #[test]
     fn frames_and_models_come_back_aligned() {
         let ring = RingConformations::new(8, 1.52, 130.0).unwrap();
@@ -287,15 +296,6 @@ mod tests {
         let places: Vec<[f64; 3]> = drawn.point(6).as_chunks::<3>().0.to_vec();
         let known = Alignment::new(&places, &[1.0; 8]).unwrap();
         let known = known.align_all(&drawn).unwrap().points;
-        // The seventh frame stands turned in its file: what is compared is the shape of the cloud, all distances of
-        // points.
-        let distances = |cloud: &PointCloud<f64>| {
-            let pairs = (0..cloud.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
-            let all = pairs
-                .map(|(a, b)| cloud.squared_distance(a, b).sqrt())
-                .collect();
-            PointCloud::new(1, all).unwrap()
-        };
         let known = distances(&known);
         for (arguments, name, limit) in [
             ("--atoms element:C --reference frame:7", "ring.xyz", 1e-6),

@@ -23,8 +23,18 @@ fn naive<S: Scalar>(cloud: &PointCloud<S>, rows: &[usize], dt: f64) -> u32 {
     dimension_of(&variances, dt)
 }
 
-/// Counts and dimensions of all points, and moments of some, are those of the definition.
+/// Counts, dimensions and moments of all points are those of the definition.
 fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
+    agree_at(cloud, eps, dt, 0..cloud.len());
+}
+
+/// The same for some of the points.
+fn agree_at<S: Scalar>(
+    cloud: &PointCloud<S>,
+    eps: f64,
+    dt: f64,
+    rows: impl Iterator<Item = usize>,
+) {
     let tree = MomentTree::new(cloud).unwrap();
     let found = tree.dimensions(eps, dt, &Serial).unwrap();
     assert_eq!(found.len(), cloud.len());
@@ -43,7 +53,7 @@ fn agree<S: Scalar>(cloud: &PointCloud<S>, eps: f64, dt: f64) {
     })
     .unwrap();
     let balls = balls.into_inner().unwrap();
-    for i in 0..cloud.len() {
+    for i in rows {
         let rows = scan(cloud, i, eps);
         let at = format!("point {i} of {} in R^{n}, eps {eps}", cloud.len());
         assert_eq!(found[i].neighbors as usize, rows.len(), "{at}");
@@ -192,8 +202,9 @@ proptest! {
     ) {
         let rows = curved(n, 900, seed).iter().map(|x| x + shift).collect();
         let cloud = PointCloud::new(n, rows).unwrap();
-        agree(&cloud, eps, dt);
-        agree(&cloud.cast::<f32>(), eps, dt);
+        let some = (seed % 5) as usize;
+        agree_at(&cloud, eps, dt, (some..900).step_by(5));
+        agree_at(&cloud.cast::<f32>(), eps, dt, (some..900).step_by(5));
     }
 
     #[test]

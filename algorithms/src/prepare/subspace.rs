@@ -96,7 +96,9 @@ fn is_noise(variances: &[f64], points: usize, spare: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surfaces::{Random, SampleSurface, Sampling, embed};
+    use crate::surfaces::{
+        Random, RingConformations, RingGeometry, SampleSurface, Sampling, embed,
+    };
 
     fn noisy(name: &str, width: usize, deviation: f64) -> PointCloud<f64> {
         let surface = SampleSurface::find(name).unwrap();
@@ -151,7 +153,9 @@ mod tests {
     #[test]
     fn where_no_direction_is_noise_alone_there_is_none() {
         // No noise; too few directions for noise to show; a surface that bends into all of its directions; noise alone.
-        let ring = crate::surfaces::RingConformations::cyclo_octane();
+        let mut seven = RingGeometry::regular(7, 1.52, 115.0);
+        seven.bond_angles[0] = None;
+        let ring = RingConformations::of(&seven).unwrap();
         let rings = ring.sample(2000, 1).unwrap().points;
         let clouds = [noisy("torus", 20, 0.0), noisy("torus", 5, 0.01), rings];
         for cloud in &clouds {

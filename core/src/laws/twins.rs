@@ -5,8 +5,16 @@ use super::{Failures, Law, LawBroken, Settings};
 /// Sources of the modules that state laws.
 const SOURCES: [&str; 10] = [
     include_str!("metric.rs"),
-    include_str!("neighborhood.rs"),
-    include_str!("dimension.rs"),
+    concat!(
+        include_str!("neighborhood/mod.rs"),
+        "mod tests {",
+        include_str!("neighborhood/tests.rs")
+    ),
+    concat!(
+        include_str!("dimension/mod.rs"),
+        "mod tests {",
+        include_str!("dimension/tests.rs")
+    ),
     concat!(
         include_str!("singularity/mod.rs"),
         "mod tests {",

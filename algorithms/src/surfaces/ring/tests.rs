@@ -255,8 +255,11 @@ fn larger_piece_is_one_sided_and_smaller_one_is_not() {
 
 #[test]
 fn same_seed_same_conformations() {
-    let ring = RingConformations::cyclo_octane();
-    let (a, b) = (ring.sample(300, 5).unwrap(), ring.sample(300, 5).unwrap());
+    let mut seven = RingGeometry::regular(7, 1.52, 115.0);
+    seven.bond_angles[0] = None;
+    let ring = RingConformations::of(&seven).unwrap();
+    let [a, b, other] = [5, 5, 6].map(|seed| ring.sample(300, seed).unwrap());
     assert_eq!(a.points, b.points);
     assert_eq!(a.pieces, b.pieces);
+    assert_ne!(a.points, other.points);
 }
