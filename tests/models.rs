@@ -174,8 +174,9 @@ const CASES: [Case; 17] = [
         links: &[(LinkKind::Arc, None)],
     },
     Case {
+        // With 3,000 points one or two of the blunt corners that go inward have too little missing.
         surface: "star_plate",
-        points: 3_000,
+        points: 5_000,
         eps: 0.14,
         dl: 0.07,
         models: &ModelName::AUTO,

@@ -2,6 +2,7 @@
 
 use super::lowest::lowest;
 use nalgebra::SVector;
+use std::f64::consts::{PI, TAU};
 
 /// The curve `v = a + b t + d |t - k|`, bent a little on both sides of `k`, of least mean height over points `(t, v)` with none of them above it: two
 /// arms that meet in a corner. The points are of the size 1.
@@ -75,6 +76,28 @@ impl Kink {
     /// Slopes of the arms before and behind the corner, where they meet.
     pub(super) fn slopes(&self) -> [f64; 2] {
         [-1.0, 1.0].map(|side| self.terms[1] + side * self.terms[2])
+    }
+
+    /// The angle between the arms where they meet, below them.
+    pub(super) fn inner_angle(&self) -> f64 {
+        let [before, behind] = self.slopes();
+        PI - before.atan() + behind.atan()
+    }
+
+    /// Angles from the arms, where they are as far from the corner, down to a point that is given about the corner.
+    pub(super) fn below_arms(&self, [t, v]: [f64; 2]) -> [f64; 2] {
+        let far = t.hypot(v);
+        let slopes = self.slopes();
+        // What is beyond the middle of the outside is a rounding above the arm.
+        let outside = (TAU + self.inner_angle()) / 2.0;
+        [0, 1].map(|arm| {
+            let side = [-1.0, 1.0][arm];
+            let s = side * far / slopes[arm].hypot(1.0);
+            let rise = slopes[arm] + self.terms[3 + arm] * s;
+            // Seen from the side on which the arm goes to the right.
+            let down = ((side * rise).atan() - v.atan2(side * t)).rem_euclid(TAU);
+            if down > outside { 0.0 } else { down }
+        })
     }
 
     /// The place of an arm, 0 before and 1 behind the corner, that is nearest to a point, by Newton's method from the tangent at the corner.

@@ -57,6 +57,7 @@ fn about_first(coordinates: &[f64], radius: f64) -> crosscap_core::LocalPoints<'
         coordinates,
         fitted: coordinates.len() / 3,
         center: 0,
+        middle: 0,
         radius,
     }
 }

@@ -33,6 +33,8 @@ pub(super) struct Evidence {
     pub(super) turn: f64,
     /// Points that would have to lie between the corner and the one nearest to it.
     pub(super) in_tip: f64,
+    /// Points that would have to lie between one of the arms and the points below it.
+    pub(super) below_arm: f64,
     /// Points that would have to lie between the corner and the smooth boundary that comes nearest to it.
     pub(super) missing: f64,
 }
@@ -90,21 +92,47 @@ impl Laid<'_> {
         let Wedge { axes, kink, beyond } = wedge;
         let density = self.points.len() as f64 / (PI - beyond).max(f64::MIN_POSITIVE);
         let [before, behind] = kink.slopes();
-        let turn = before.atan() - behind.atan();
+        let inner = kink.inner_angle();
         let [t, v] = kink.corner();
-        let to_corner = |p: &[f64; 2]| (p[0] - t).hypot(p[1] - v);
-        let nearest = self
+        let about: Vec<[f64; 2]> = self
             .over(axes)
             .iter()
-            .map(to_corner)
+            .map(|p| [p[0] - t, p[1] - v])
+            .collect();
+        let nearest = about
+            .iter()
+            .map(|p| p[0].hypot(p[1]))
             .fold(f64::INFINITY, f64::min);
         // Over the middle, and over both arms.
         let over = |slope: f64| [0, 1].map(|i| axes.out[i] - slope * axes.along[i]);
         let smooth = [0.0, before, behind].map(|slope| self.beyond_smooth(over(slope)));
         Evidence {
-            turn,
-            in_tip: density * (PI - turn) / 2.0 * nearest * nearest,
+            turn: PI - inner,
+            in_tip: density * inner / 2.0 * nearest * nearest,
+            below_arm: density * empty_below(&about, kink),
             missing: density * (beyond - smooth.into_iter().fold(0.0, f64::max)),
         }
     }
+}
+
+/// The largest area below an arm of a kink, from the corner on, that holds none of the points, which are given about the corner: a sector that reaches from the arm to the
+/// first of the points nearer to the corner than its radius.
+fn empty_below(points: &[[f64; 2]], kink: &Kink) -> f64 {
+    let mut polar: Vec<(f64, [f64; 2])> = points
+        .iter()
+        .map(|p| {
+            let far = p[0].hypot(p[1]);
+            (far, kink.below_arms(*p))
+        })
+        .collect();
+    polar.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut free = [kink.inner_angle(); 2];
+    let mut most = 0.0_f64;
+    for (far, angles) in polar {
+        for (free, angle) in free.iter_mut().zip(angles) {
+            most = most.max(*free * far * far / 2.0);
+            *free = free.min(angle);
+        }
+    }
+    most
 }

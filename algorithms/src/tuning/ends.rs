@@ -166,6 +166,9 @@ pub struct BoundaryCornerTuning {
     pub missing: f64,
     /// Most points that may be missing between the corner and the point nearest to it: so many are by chance in one of 50 places.
     pub tip: f64,
+    /// Most points that may be missing below an arm of a corner that goes inward, in any sector from the corner to the first point. The lowest curve over a notch of less than
+    /// 80 degrees can lie in the air beside one of its sides (60 degrees: 56 of 200 random ones, the corner up to 0.56 radii off). So many are missing by chance in one of 500 corners.
+    pub arm: f64,
     /// A point off the boundary tells where it is up to this many ep.
     pub witness: f64,
 }
@@ -179,6 +182,7 @@ impl BoundaryCornerTuning {
         smooth: [1.25, 0.5, 0.3],
         missing: 8.0,
         tip: 4.0,
+        arm: 12.0,
         witness: 3.0,
     };
 }

@@ -193,6 +193,7 @@ impl<'a, S: Scalar> Fitter<'a, S> {
             coordinates: &scratch.local,
             fitted: view.fitted,
             center: view.center,
+            middle: view.center,
             radius: view.radius,
         }
     }
