@@ -13,16 +13,19 @@ use crosscap_algorithms::metric::{
 };
 use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::{
-    BareCurve, Book, Boundary, ConePoint, CurveOnSheet, CurveThroughSheet, IsolatedCrossing,
-    OneSheet, TriplePoint, TwoPlanes, YJunction,
+    BareCurve, Book, Boundary, BoundaryCorner, ConePoint, CurveOnSheet, CurveThroughSheet,
+    IsolatedCrossing, OneSheet, TriplePoint, TwoPlanes, YJunction,
 };
 use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, MinimumCircumradius, Rules};
 use crosscap_algorithms::tuning::FrontTuning;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
 use crosscap_backends::linear_program::LinearProgramTest;
-use crosscap_core::laws::{Draw, Instance, Instances, Settings, instances};
-use crosscap_core::{MetricSpace, PointCloud, Scalar, law_tests};
+use crosscap_core::laws::{self, Draw, Instance, Instances, Settings, instances};
+use crosscap_core::{
+    Decomposition, LocalPoints, Located, MetricSpace, PointCloud, Rejection, Scalar,
+    SingularityModel, law_tests,
+};
 
 /// More inputs than a plug-in author needs: these models are everybody's.
 fn settings() -> Settings {
@@ -169,6 +172,9 @@ law_tests! {
     // The curve is as sharp as the sample: with fewer points the outermost ones leave wide notches.
     mod boundary = model(&Boundary::new(0.1, 0.05).unwrap(), &of(400..=800, &instances::boundary)),
         settings: settings();
+    mod boundary_corner =
+        model(&BoundaryCorner::new(0.1, 0.05).unwrap(), &of(CORNERS, &instances::boundary_corner)),
+        settings: few();
     mod y_junction =
         model(&YJunction::new(0.1, 0.05).unwrap(), &Instances::new(&instances::y_junction)),
         settings: settings();
@@ -202,6 +208,57 @@ law_tests! {
         settings: settings();
     mod bare_curve = model(&BareCurve::new(0.1, 0.05).unwrap(), &Instances::new(&instances::curve)),
         settings: settings();
+}
+
+/// A corner is told by the points that are not there: a sector with few of them might as well be round. Two thirds of them are the neighborhood.
+const CORNERS: RangeInclusive<usize> = 300..=500;
+
+/// A fit is two dozen linear programs.
+fn few() -> Settings {
+    Settings {
+        cases: 64,
+        ..settings()
+    }
+}
+
+/// As corners were told once: empty places of the ball are measured from the row that is asked about.
+struct MeasuredFromCenter(BoundaryCorner);
+
+impl MeasuredFromCenter {
+    fn about_center<'a>(local: &LocalPoints<'a>) -> LocalPoints<'a> {
+        LocalPoints {
+            middle: local.center,
+            ..*local
+        }
+    }
+}
+
+impl SingularityModel for MeasuredFromCenter {
+    fn local_dimension(&self) -> usize {
+        self.0.local_dimension()
+    }
+    fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
+        self.0.decompose(&Self::about_center(local))
+    }
+    fn decompose_about(
+        &self,
+        local: &LocalPoints<'_>,
+        rows: &[usize],
+    ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
+        self.0.decompose_about(&Self::about_center(local), rows)
+    }
+    fn name(&self) -> &str {
+        "measured-from-center"
+    }
+}
+
+#[test]
+fn a_ball_measured_from_the_center_breaks_a_law() {
+    let model = MeasuredFromCenter(BoundaryCorner::new(0.1, 0.05).unwrap());
+    let found = laws::model(&few(), &model, &of(CORNERS, &instances::boundary_corner));
+    let found = found.unwrap_err();
+    let broken: Vec<&str> = found.broken().map(|b| b.law.name).collect();
+    assert_eq!(broken, ["about"]);
 }
 
 /// With the parts of the pipeline.

@@ -19,7 +19,7 @@ struct Case {
     links: &'static [(LinkKind, Option<usize>)],
 }
 
-const CASES: [Case; 15] = [
+const CASES: [Case; 17] = [
     Case {
         surface: "three_spheres",
         points: 60_000,
@@ -163,6 +163,25 @@ const CASES: [Case; 15] = [
         models: &ModelName::AUTO,
         betti: [1, 0, 1],
         links: &[(LinkKind::IsolatedCrossing, Some(4)), (LinkKind::Arc, None)],
+    },
+    Case {
+        surface: "l_plate",
+        points: 2_500,
+        eps: 0.22,
+        dl: 0.11,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::Arc, None)],
+    },
+    Case {
+        // With 3,000 points one or two of the blunt corners that go inward have too little missing.
+        surface: "star_plate",
+        points: 5_000,
+        eps: 0.14,
+        dl: 0.07,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 0],
+        links: &[(LinkKind::Arc, None)],
     },
 ];
 

@@ -191,6 +191,16 @@ pub const NUMBERS: &[Number] = numbers! {
     Length models.cone_point.astray out 1.0;
     Length models.cone_point.gain out 1.0;
     Length models.cone_point.half_share out 0.0;
+    Length models.boundary_corner.reach out 10.0;
+    Length models.boundary_corner.turn out 0.0;
+    Length models.boundary_corner.arm_bend;
+    Length models.boundary_corner.smooth[0];
+    Length models.boundary_corner.smooth[1];
+    Length models.boundary_corner.smooth[2];
+    Length models.boundary_corner.missing out 0.0;
+    Length models.boundary_corner.tip out 1e6;
+    Length models.boundary_corner.arm out 1e6;
+    Length models.boundary_corner.witness out 0.0;
 };
 
 impl Number {

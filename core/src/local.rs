@@ -13,8 +13,14 @@ pub struct LocalPoints<'a> {
     /// How many leading rows the model is fitted to: the neighborhood. Rows behind them lie
     /// a little farther out and are only labelled.
     pub fitted: usize,
-    /// Which row is the center of the neighborhood; it may be one behind those that are fitted.
+    /// Which row is the center: the point that is asked about. It may be one behind those that are fitted.
     pub center: usize,
+    /// Which row the ball of `radius` is about. The fitted rows fill this ball as far as the surface does, so where it is empty tells something.
+    ///
+    /// The pipeline asks about points in balls about them, and then this is the center as well. A fit that stands for more points
+    /// ([`SingularityModel::decompose_about`](crate::SingularityModel::decompose_about)) is asked about other centers, and the ball stays
+    /// where it is: a model that measures its ball does so from here, and so its fit is the same whoever is the center.
+    pub middle: usize,
     /// Radius of the neighborhood.
     pub radius: f64,
 }

@@ -92,6 +92,9 @@ pub trait SingularityModel: Sync {
     /// Whether the model says what is at the end of a curve: it is then asked about balls about the ends of
     /// double curves, of eps and wider ones, and its labels stand for all points of the ball about the point
     /// that it finds. Such a model is not asked elsewhere unless [`SingularityModel::applies_to`] says so.
+    ///
+    /// Together with [`SingularityModel::finds_boundary`] it says the same of boundaries: it is asked about balls of two eps and more about points of
+    /// boundaries that were found, and what it finds are corners.
     fn explains_ends(&self) -> bool {
         false
     }

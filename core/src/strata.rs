@@ -297,6 +297,7 @@ mod tests {
             coordinates: rows.as_flattened(),
             fitted: 4,
             center: 0,
+            middle: 0,
             radius: 1.0,
         };
         fit.check(&local).map_err(|c| c.law)

@@ -95,6 +95,7 @@ fn checked(
         certificate: &certificate,
         pieces: &pieces,
         creases: creases.as_ref(),
+        special_points: options.special_points,
     };
     let mut known = Value::Object(findings.json(certificate.verdict().is_verified()));
     if let Some(preparation) = preparation {
@@ -143,6 +144,7 @@ pub fn page(
             certificate: &certificate,
             pieces: &pieces,
             creases: None,
+            special_points: &[],
         };
         let mut scene = picture::scene(&title, &findings, &verdict, None)?;
         if let Some(points) = &points {

@@ -125,6 +125,7 @@ impl Check {
                 certificate: &certificate,
                 pieces: &pieces,
                 creases: creases.as_ref(),
+                special_points: &origin.special_points,
             },
             local.as_ref(),
             preparation.as_ref(),

@@ -1,10 +1,10 @@
 //! What is known about a mesh, for readers and for programs.
 
 use super::number::{betti, counted};
-use crosscap_algorithms::certificate::Certificate;
+use crosscap_algorithms::certificate::{Certificate, SpecialPoint};
 use crosscap_algorithms::creases::Creases;
 use crosscap_algorithms::homology::Homology;
-use crosscap_algorithms::pieces::{Pieces, PiecesError};
+use crosscap_algorithms::pieces::{BoundaryCorners, Pieces, PiecesError};
 use crosscap_core::Mesh;
 use serde_json::{Map, Value, json};
 
@@ -17,6 +17,8 @@ pub struct Findings<'a> {
     pub pieces: &'a Result<Pieces, PiecesError>,
     /// Not known without the points.
     pub creases: Option<&'a Creases>,
+    /// Vertices that models call points.
+    pub special_points: &'a [SpecialPoint],
 }
 
 impl Findings<'_> {
@@ -49,17 +51,24 @@ impl Findings<'_> {
     /// The pieces in a sentence, or why they cannot be told.
     pub fn description(&self) -> String {
         match self.pieces {
-            Ok(pieces) => pieces.to_string(),
+            Ok(pieces) => match self.corners() {
+                Some(corners) => format!("{pieces} {}.", capitalized(&corners.to_string())),
+                None => pieces.to_string(),
+            },
             Err(error) => format!("not told apart: {error}"),
         }
+    }
+
+    /// Corners of the boundary, where there are any.
+    fn corners(&self) -> Option<BoundaryCorners> {
+        let corners = BoundaryCorners::of(self.mesh, self.special_points);
+        (!corners.all().is_empty()).then_some(corners)
     }
 
     /// Faces, creases and corners in a sentence, where there are any.
     pub fn creased(&self) -> Option<String> {
         let creases = self.creases.filter(|c| !c.creases.is_empty())?.to_string();
-        let mut letters = creases.chars();
-        let first = letters.next()?.to_uppercase();
-        Some(format!("{first}{}.", letters.as_str()))
+        Some(format!("{}.", capitalized(&creases)))
     }
 
     /// Whether every piece is orientable; `None` when the pieces cannot be told.
@@ -120,6 +129,7 @@ impl Findings<'_> {
             "pieces": pieces,
             "pieces_error": error,
             "creases": self.creases,
+            "boundary_corners": self.corners(),
             "certificate": self.certificate,
         });
         match all {
@@ -127,6 +137,13 @@ impl Findings<'_> {
             _ => Map::new(),
         }
     }
+}
+
+/// The same with a capital letter at its beginning.
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
 }
 
 /// JSON for people to read, with a line feed at its end.

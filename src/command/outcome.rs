@@ -61,6 +61,7 @@ pub fn findings(outcome: &Outcome) -> Findings<'_> {
         certificate: &outcome.certificate,
         pieces: &outcome.pieces,
         creases: outcome.creases.as_ref(),
+        special_points: &outcome.special_points,
     }
 }
 

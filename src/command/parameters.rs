@@ -123,7 +123,8 @@ pub struct ParameterArguments {
     /// given), y-junction (three sheets on a curve), triple-point (three sheets crossing in a point), isolated-crossing
     /// (two sheets of R^4 or more that have one point in common), curve (no surface around), curve-through-sheet,
     /// curve-on-sheet, pinch-point (a double curve ends in one sheet), book (any number of sheets on a curve), book-end (a curve
-    /// ends where sheets that meet in it do), cone-point (the tip of a cone, or two tips that touch). With --surface only boundary is looked for. [default: auto; two-planes where --eps and --dl are both
+    /// ends where sheets that meet in it do), cone-point (the tip of a cone, or two tips that touch), boundary-corner (a corner of
+    /// a boundary that was found). With --surface only boundary is looked for. [default: auto; two-planes where --eps and --dl are both
     /// given]
     #[arg(long, value_name = "NAME,...", value_parser = models)]
     pub models: Option<Models>,

@@ -7,7 +7,7 @@ use super::points::PointArguments;
 use super::terminal::{Progress, say};
 use super::{output, overlay, picture};
 use clap::Args;
-use crosscap_algorithms::certificate::{CertificateOptions, certify};
+use crosscap_algorithms::certificate::{CertificateOptions, SpecialPoint, certify};
 use crosscap_algorithms::homology::homology;
 use crosscap_algorithms::pieces::pieces;
 use crosscap_backends::files::{
@@ -139,12 +139,17 @@ impl View {
         let homology = homology(&mesh.complex)?;
         let certificate = certify(mesh, &CertificateOptions::default());
         let pieces = pieces(mesh);
+        let declared = file.extras.metadata.get("special_points");
+        let special_points: Vec<SpecialPoint> = declared
+            .and_then(|all| serde_json::from_value(all.clone()).ok())
+            .unwrap_or_default();
         let findings = Findings {
             mesh,
             homology: &homology,
             certificate: &certificate,
             pieces: &pieces,
             creases: None,
+            special_points: &special_points,
         };
         let made = file
             .extras

@@ -49,7 +49,7 @@ impl fmt::Display for Pieces {
 }
 
 /// A number in words up to twelve.
-fn number(n: usize) -> String {
+pub(super) fn number(n: usize) -> String {
     const WORDS: [&str; 13] = [
         "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
         "eleven", "twelve",

@@ -16,6 +16,7 @@
 //!
 //! Time O(v + t log t), linear memory.
 
+mod corners;
 mod curves;
 mod description;
 mod error;
@@ -27,6 +28,7 @@ mod straightness;
 mod surface;
 mod winding;
 
+pub use corners::{BoundaryCorner, BoundaryCorners};
 pub use error::PiecesError;
 pub use found::{
     BareCurve, CrossingAngle, CurveEnd, CurveMeeting, DoubleCurve, Junction, MultiplePoint, Piece,

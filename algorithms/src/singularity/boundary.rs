@@ -50,14 +50,14 @@ impl Boundary {
 }
 
 /// Coordinates in the tangent plane: along the boundary and outward from the center.
-struct Axes {
-    along: [f64; 2],
-    out: [f64; 2],
+pub(super) struct Axes {
+    pub(super) along: [f64; 2],
+    pub(super) out: [f64; 2],
     origin: [f64; 2],
 }
 
 impl Axes {
-    fn new(origin: [f64; 2], out: [f64; 2]) -> Self {
+    pub(super) fn new(origin: [f64; 2], out: [f64; 2]) -> Self {
         let length = out[0].hypot(out[1]);
         let out = [out[0] / length, out[1] / length];
         Self {
@@ -67,15 +67,15 @@ impl Axes {
         }
     }
 
-    fn plane(&self, x: &Vector3<f64>) -> [f64; 2] {
-        let d = [x.x - self.origin[0], x.y - self.origin[1]];
+    pub(super) fn plane(&self, x: [f64; 2]) -> [f64; 2] {
+        let d = [x[0] - self.origin[0], x[1] - self.origin[1]];
         [
             self.along[0] * d[0] + self.along[1] * d[1],
             self.out[0] * d[0] + self.out[1] * d[1],
         ]
     }
 
-    fn back(&self, [t, v]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn back(&self, [t, v]: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| self.origin[k] + t * self.along[k] + v * self.out[k])
     }
 }
@@ -102,14 +102,14 @@ fn breadth(points: &[Vector3<f64>], center: &Vector3<f64>, radius: f64) -> f64 {
     }
 }
 
-/// Area of the disc of `radius` about the origin beyond the parabola.
-fn area_beyond(envelope: &Envelope, radius: f64) -> f64 {
+/// Area of the disc of `radius` about the origin beyond the curve of the given height.
+pub(super) fn area_beyond(height: impl Fn(f64) -> f64, radius: f64) -> f64 {
     let width = 2.0 * radius / STRIPS as f64;
     (0..STRIPS)
         .map(|k| {
             let t = -radius + (k as f64 + 0.5) * width;
             let half = (radius * radius - t * t).max(0.0).sqrt();
-            (half - envelope.at(t).clamp(-half, half)) * width
+            (half - height(t).clamp(-half, half)) * width
         })
         .sum()
 }
@@ -125,7 +125,7 @@ impl Boundary {
     ) -> Result<(Axes, Envelope), Rejection> {
         let mut axes = Axes::new([center.x, center.y], [center.x, center.y]);
         let upright = |axes: &Axes| {
-            let flat: Vec<[f64; 2]> = points.iter().map(|x| axes.plane(x)).collect();
+            let flat: Vec<[f64; 2]> = points.iter().map(|x| axes.plane([x.x, x.y])).collect();
             Envelope::above(&flat, radius).ok_or(Rejection::NoRealSolution)
         };
         let mut envelope = upright(&axes)?;
@@ -138,7 +138,7 @@ impl Boundary {
         if envelope.bend().abs() * radius > self.tuning.bend {
             return Err(Rejection::NoRealSolution);
         }
-        let beyond = area_beyond(&envelope, radius);
+        let beyond = area_beyond(|t| envelope.at(t), radius);
         let inside = PI * radius * radius - beyond;
         let missing = points.len() as f64 * beyond / inside.max(f64::MIN_POSITIVE);
         if missing < self.tuning.missing {
@@ -215,7 +215,7 @@ impl SingularityModel for Boundary {
             .iter()
             .enumerate()
             .map(|(k, x)| {
-                let place = axes.plane(x);
+                let place = axes.plane([x.x, x.y]);
                 let outside = k >= count && place[0].abs() > local.radius;
                 u8::from(outside || envelope.depth(place) >= self.tolerance.ep)
             })

@@ -1,7 +1,7 @@
 //! Singularity models by name.
 
 use super::{
-    BareCurve, Book, BookEnd, Boundary, ConePoint, CurveOnSheet, CurveThroughSheet,
+    BareCurve, Book, BookEnd, Boundary, BoundaryCorner, ConePoint, CurveOnSheet, CurveThroughSheet,
     IsolatedCrossing, PinchPoint, TriplePoint, TwoPlanes, YJunction,
 };
 use crate::tuning::ModelTuning;
@@ -47,6 +47,8 @@ pub enum ModelName {
     BookEnd,
     /// [`ConePoint`].
     ConePoint,
+    /// [`BoundaryCorner`].
+    BoundaryCorner,
 }
 
 /// Rounds of the refinement by equation (5).
@@ -54,7 +56,7 @@ const REFINEMENT_ROUNDS: usize = 20;
 
 impl ModelName {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::TwoPlanes,
         Self::RefinedTwoPlanes,
         Self::Boundary,
@@ -68,10 +70,11 @@ impl ModelName {
         Self::Book,
         Self::BookEnd,
         Self::ConePoint,
+        Self::BoundaryCorner,
     ];
 
     /// Those that compete where the user leaves the choice to the program.
-    pub const AUTO: [Self; 12] = [
+    pub const AUTO: [Self; 13] = [
         Self::TwoPlanes,
         Self::Boundary,
         Self::YJunction,
@@ -84,6 +87,7 @@ impl ModelName {
         Self::Book,
         Self::BookEnd,
         Self::ConePoint,
+        Self::BoundaryCorner,
     ];
 
     /// The name on the command line and in reports.
@@ -102,6 +106,7 @@ impl ModelName {
             Self::Book => "book",
             Self::BookEnd => "book-end",
             Self::ConePoint => "cone-point",
+            Self::BoundaryCorner => "boundary-corner",
         }
     }
 
@@ -147,6 +152,9 @@ impl ModelName {
             Self::Book => Box::new(Book::new(dp, ep)?.tuned(tuning.book)),
             Self::BookEnd => Box::new(BookEnd::new(dp, ep)?.tuned(tuning.book_end)),
             Self::ConePoint => Box::new(ConePoint::new(dp, ep)?.tuned(tuning.cone_point)),
+            Self::BoundaryCorner => {
+                Box::new(BoundaryCorner::new(dp, ep)?.tuned(tuning.boundary_corner))
+            }
         })
     }
 }

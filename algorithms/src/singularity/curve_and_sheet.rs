@@ -490,6 +490,7 @@ mod tests {
             coordinates,
             fitted,
             center: 0,
+            middle: 0,
             radius: RADIUS,
         }
     }

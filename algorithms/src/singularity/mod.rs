@@ -3,6 +3,7 @@
 mod book;
 mod book_end;
 mod boundary;
+mod boundary_corner;
 mod choice;
 mod cone_point;
 mod curve;
@@ -12,6 +13,8 @@ mod curve_fit;
 mod envelope;
 mod flats;
 mod isolated_crossing;
+mod kink;
+mod lowest;
 mod page_sheets;
 mod pages;
 mod patch;
@@ -27,10 +30,12 @@ mod tolerance;
 mod triple_point;
 mod two_planes;
 mod vanishing;
+mod wedge;
 mod y_junction;
 pub use book::Book;
 pub use book_end::BookEnd;
 pub use boundary::Boundary;
+pub use boundary_corner::BoundaryCorner;
 pub use choice::ModelName;
 pub use cone_point::ConePoint;
 pub use curve::BareCurve;
@@ -52,6 +57,7 @@ fn about_first(coordinates: &[f64], radius: f64) -> crosscap_core::LocalPoints<'
         coordinates,
         fitted: coordinates.len() / 3,
         center: 0,
+        middle: 0,
         radius,
     }
 }

@@ -85,7 +85,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         let dl = options.dl;
         let gap = 2.0 * tuning.skeleton.node_spacing * dl;
         let mut strata = Strata::of(analysis, space.places(), gap, dl);
-        curve_ends::explain(analyzer, &mut strata)?;
+        curve_ends::explain(analyzer, analysis, &mut strata)?;
         let skeleton = Skeleton::lay(analyzer, &strata, dl)?;
         let chosen = landmarks::choose(analyzer, &strata, &skeleton, selector, dl, options.seed)?;
         let fits: Vec<&Reference> = skeleton.labelling().collect();

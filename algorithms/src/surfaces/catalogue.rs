@@ -3,6 +3,7 @@
 use super::faceted::faceted_surfaces;
 use super::further::further_surfaces;
 use super::paper::paper_surfaces;
+use super::plates::plates;
 use super::singular::singular_surfaces;
 use super::surface::SampleSurface;
 use crosscap_core::Error;
@@ -13,6 +14,7 @@ pub fn catalogue() -> Vec<SampleSurface> {
     all.extend(further_surfaces());
     all.extend(singular_surfaces());
     all.extend(faceted_surfaces());
+    all.extend(plates());
     all
 }
 

@@ -75,6 +75,80 @@ impl Piece for Rectangle {
     }
 }
 
+/// A flat polygon of space, in the plane of the first two coordinates, which are its parameters.
+#[derive(Clone, Debug)]
+pub struct Polygon {
+    name: &'static str,
+    corners: Vec<[f64; 2]>,
+}
+
+impl Polygon {
+    /// The polygon with the given corners, in their order around it.
+    pub fn new(name: &'static str, corners: Vec<[f64; 2]>) -> Self {
+        Self { name, corners }
+    }
+
+    fn sides(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
+        let next = self.corners.iter().cycle().skip(1);
+        self.corners.iter().zip(next).map(|(&a, &b)| [a, b])
+    }
+}
+
+impl Piece for Polygon {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+    fn ambient_dimension(&self) -> usize {
+        3
+    }
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [0, 1].map(|k| {
+            let all = || self.corners.iter().map(|c| c[k]);
+            let least = all().fold(f64::INFINITY, f64::min);
+            [least, all().fold(f64::NEG_INFINITY, f64::max)]
+        })
+    }
+    fn ends(&self) -> [bool; 2] {
+        [true; 2]
+    }
+    fn map(&self, [x, y]: [Jet; 2], place: &mut [Jet]) {
+        place.copy_from_slice(&[x, y, x * 0.0]);
+    }
+    /// Whether a ray to one side leaves it an odd number of times.
+    fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        let crossed = self.sides().filter(|[a, b]| {
+            (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1])
+        });
+        crossed.count() % 2 == 1
+    }
+    fn area_element_bound(&self) -> f64 {
+        1.0
+    }
+    /// Gauss's formula.
+    fn area(&self) -> f64 {
+        let double = self.sides().map(|[a, b]| a[0] * b[1] - a[1] * b[0]);
+        (double.sum::<f64>() / 2.0).abs()
+    }
+    fn rims(&self) -> Vec<Vec<RimSegment>> {
+        let sides = self.sides();
+        vec![sides.map(|[from, to]| RimSegment { from, to }).collect()]
+    }
+    fn closed_form_distance(&self, place: &[f64]) -> Option<f64> {
+        let at = [place[0], place[1]];
+        let beside = self.sides().map(|[a, b]| {
+            let [way, from] = [[b[0] - a[0], b[1] - a[1]], [at[0] - a[0], at[1] - a[1]]];
+            let length = way[0] * way[0] + way[1] * way[1];
+            let share = ((from[0] * way[0] + from[1] * way[1]) / length).clamp(0.0, 1.0);
+            libm::hypot(from[0] - share * way[0], from[1] - share * way[1])
+        });
+        let off = match self.holds(at) {
+            true => 0.0,
+            false => beside.fold(f64::INFINITY, f64::min),
+        };
+        Some(libm::hypot(off, place[2]))
+    }
+}
+
 /// Half of a flat disc of space, on one side of a diameter. Parameters: distance from the middle of the
 /// diameter, angle from it.
 #[derive(Clone, Debug)]

@@ -131,6 +131,8 @@ pub enum PointKind {
     QuadrupleJunction,
     /// Three or more creases meet.
     Corner,
+    /// The boundary turns by an angle.
+    BoundaryCorner,
     /// A crease ends at the boundary.
     CreaseEnd,
     /// The tip of a cone: a sheet without a tangent plane.

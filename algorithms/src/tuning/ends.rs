@@ -148,3 +148,41 @@ impl BookEndTuning {
         step: 0.6,
     };
 }
+
+/// When a corner of a boundary is believed. Lengths are in radii of the ball.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BoundaryCornerTuning {
+    /// Farthest that the corner is from the center.
+    pub reach: f64,
+    /// Least turn of the boundary at the corner, in radians: what turns less may be an ellipse.
+    pub turn: f64,
+    /// Greatest bend of the arms, half of their second derivative.
+    pub arm_bend: f64,
+    /// Greatest coefficients of the square, the cube and the fourth power in a smooth boundary over its tangent. The first is half of its
+    /// curvature, 0.4 radii of curvature; with the third a circle of such a radius is followed for most of the ball.
+    pub smooth: [f64; 3],
+    /// Points that would have to lie between the smooth boundary and the corner. In balls of 2 and 2.8 eps about points of discs, ellipses of 2:1 and 3:1,
+    /// holes and a square with round corners there were up to 7, at nearly all corners of 36 to 110 degrees, and of 235 and 270, more.
+    pub missing: f64,
+    /// Most points that may be missing between the corner and the point nearest to it: so many are by chance in one of 50 places.
+    pub tip: f64,
+    /// Most points that may be missing below an arm of a corner that goes inward, in any sector from the corner to the first point. The lowest curve over a notch of less than
+    /// 80 degrees can lie in the air beside one of its sides (60 degrees: 56 of 200 random ones, the corner up to 0.56 radii off). So many are missing by chance in one of 500 corners.
+    pub arm: f64,
+    /// A point off the boundary tells where it is up to this many ep.
+    pub witness: f64,
+}
+
+impl BoundaryCornerTuning {
+    /// What the program runs with.
+    pub const MEASURED: Self = Self {
+        reach: 0.7,
+        turn: 0.7,
+        arm_bend: 0.35,
+        smooth: [1.25, 0.5, 0.3],
+        missing: 8.0,
+        tip: 4.0,
+        arm: 12.0,
+        witness: 3.0,
+    };
+}

@@ -10,7 +10,9 @@ mod models;
 mod pages;
 mod preparation;
 
-pub use ends::{BookEndTuning, BookTuning, CurveEndTuning, PinchPointTuning, RimTuning};
+pub use ends::{
+    BookEndTuning, BookTuning, BoundaryCornerTuning, CurveEndTuning, PinchPointTuning, RimTuning,
+};
 pub use front::FrontTuning;
 pub use models::{
     BoundaryTuning, ConePointTuning, CurveAndSheetTuning, IsolatedCrossingTuning, ModelTuning,
@@ -152,6 +154,12 @@ pub struct EndTuning {
     /// Farthest of the innermost landmarks of the cells about an end, in dl: with those of a random choice
     /// the triangle between two curves was often that of two cells.
     pub innermost: f64,
+    /// Spacing of the points of a boundary that a corner is looked for about.
+    pub corner_spacing: f64,
+    /// Radii of the balls in which a corner of a boundary is looked for, one after another: the evidence grows with their area.
+    pub corner_radii: [f64; 2],
+    /// How far from a corner its model says where the boundary is: balls of the analysis that reach the corner round it.
+    pub corner_reach: f64,
 }
 
 impl EndTuning {
@@ -167,6 +175,9 @@ impl EndTuning {
         gap: 0.1,
         overlap: 0.4,
         innermost: 1.2,
+        corner_spacing: 0.5,
+        corner_radii: [2.0, 2.8],
+        corner_reach: 1.5,
     };
 }
 

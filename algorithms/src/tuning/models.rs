@@ -3,7 +3,7 @@
 //! Names that several models share mean the same in each. Their values differ where the models see
 //! different things: the more sheets, the fewer points on each, and the wider a plane has to be while it is looked for.
 
-use super::ends::{BookEndTuning, BookTuning, PinchPointTuning};
+use super::ends::{BookEndTuning, BookTuning, BoundaryCornerTuning, PinchPointTuning};
 use serde::Serialize;
 
 /// When the models that come with the program believe a fit.
@@ -19,6 +19,8 @@ pub struct ModelTuning {
     pub isolated_crossing: IsolatedCrossingTuning,
     /// A sheet that ends.
     pub boundary: BoundaryTuning,
+    /// A sheet whose boundary has a corner.
+    pub boundary_corner: BoundaryCornerTuning,
     /// A curve that pierces a sheet or ends on it.
     pub curve_and_sheet: CurveAndSheetTuning,
     /// A double curve that ends inside a sheet.
@@ -39,6 +41,7 @@ impl ModelTuning {
         triple_point: TriplePointTuning::MEASURED,
         isolated_crossing: IsolatedCrossingTuning::MEASURED,
         boundary: BoundaryTuning::MEASURED,
+        boundary_corner: BoundaryCornerTuning::MEASURED,
         curve_and_sheet: CurveAndSheetTuning::MEASURED,
         pinch_point: PinchPointTuning::MEASURED,
         book: BookTuning::MEASURED,

@@ -58,7 +58,7 @@ pub struct Instance {
     pub coordinates: Vec<f64>,
     /// How many leading rows are the neighborhood.
     pub fitted: usize,
-    /// Row of the center.
+    /// Row of the center, which the neighborhood is about.
     pub center: usize,
     /// Radius of the neighborhood.
     pub radius: f64,
@@ -99,6 +99,7 @@ impl Instance {
             coordinates: &self.coordinates,
             fitted: self.fitted,
             center: self.center,
+            middle: self.center,
             radius: self.radius,
         }
     }
@@ -212,6 +213,22 @@ pub fn two_planes(draw: &mut Draw) -> Instance {
 /// A half plane: a surface that ends at a line. The center is on the line.
 pub fn boundary(draw: &mut Draw) -> Instance {
     half_planes(draw, &[0.0])
+}
+
+/// A plane sector of 50 to 95 degrees: a surface whose boundary has a corner. The center is the corner. The stratum of the truth is the cell.
+pub fn boundary_corner(draw: &mut Draw) -> Instance {
+    use std::f64::consts::{FRAC_PI_2, TAU};
+    let angle = draw.between(50.0, 95.0).to_radians();
+    pieces(draw, 3, 1, |_, [x, y]| {
+        let (radius, turn) = (x.hypot(y), y.atan2(x) * angle / TAU);
+        let (sin, cos) = turn.sin_cos();
+        let to_arm = (angle / 2.0 - turn.abs()).min(FRAC_PI_2);
+        Placed {
+            point: vec![radius * cos, radius * sin, 0.0],
+            stratum: 0,
+            margin: radius * to_arm.sin(),
+        }
+    })
 }
 
 /// Three half planes on a line, any two of them at 100 degrees or more, as in soap films.
@@ -366,10 +383,11 @@ mod tests {
 
     #[test]
     fn instances_are_what_they_say() {
-        let all: [(Generator, usize, usize); 10] = [
+        let all: [(Generator, usize, usize); 11] = [
             (flat_sheet, 3, 1),
             (two_planes, 3, 4),
             (boundary, 3, 1),
+            (boundary_corner, 3, 1),
             (y_junction, 3, 3),
             (t_junction, 3, 3),
             (triple_point, 3, 12),

@@ -80,7 +80,13 @@ impl<S: Scalar> Fitter<'_, S> {
         scratch: &mut Scratch<S>,
     ) -> Option<Result<Shown, Rejection>> {
         let engine = self.models[model].as_ref();
-        let view = self.view(ball.center, ball.radius, ball.radius + margin, scratch)?;
+        // A corner is told by the points that are missing: all of the ball count.
+        let most = match engine.finds_boundary() {
+            true => usize::MAX,
+            false => self.tuning.analysis.most_fitted,
+        };
+        let radii = [ball.radius, ball.radius + margin];
+        let view = self.view_of(ball.center, radii, most, scratch)?;
         if view.frame.spreads_beyond(engine.local_dimension()) {
             return None;
         }
@@ -138,7 +144,7 @@ impl<S: Scalar> Fitter<'_, S> {
         }
         own.sort_by_key(|x| x.0);
         let labels = own.iter().map(|x| (x.0, x.1)).collect();
-        let region = EndRegion::new([labels, beyond], fit, place.into(), reach);
+        let region = EndRegion::new([labels, beyond], fit, place.into(), reach, used);
         Some((region, own.into_iter().map(|x| x.2).collect()))
     }
 

@@ -126,11 +126,23 @@ impl<'a, S: Scalar> Fitter<'a, S> {
         reach: f64,
         scratch: &mut Scratch<S>,
     ) -> Option<View> {
+        let most = self.tuning.analysis.most_fitted;
+        self.view_of(i, [radius, reach], most, scratch)
+    }
+
+    /// The same, with at most so many rows that are fitted.
+    pub(super) fn view_of(
+        &self,
+        i: Row,
+        [radius, reach]: [f64; 2],
+        most: usize,
+        scratch: &mut Scratch<S>,
+    ) -> Option<View> {
         let Scratch { near, rest, .. } = scratch;
         self.space.oracle().within(i.index(), S::of(reach), near);
         // Neighbors come sorted by distance.
         let within = near.partition_point(|x| x.distance < S::of(radius));
-        let stride = within.div_ceil(self.tuning.analysis.most_fitted);
+        let stride = within.div_ceil(most);
         let mut fitted = within;
         if stride > 1 {
             rest.clear();
@@ -181,6 +193,7 @@ impl<'a, S: Scalar> Fitter<'a, S> {
             coordinates: &scratch.local,
             fitted: view.fitted,
             center: view.center,
+            middle: view.center,
             radius: view.radius,
         }
     }

@@ -17,6 +17,9 @@ pub struct Analysis {
     pub(in crate::stratify) witnesses: Vec<Witness>,
     /// Points whose neighborhood shows a 0-stratum, with its place, by row.
     pub(in crate::stratify) apexes: Vec<Witness>,
+    /// Radius of the neighborhoods, or of each; 0 where none was looked at.
+    pub(super) eps: f64,
+    pub(super) radii: Option<Table<Row, f64>>,
 }
 
 impl Analysis {
@@ -39,6 +42,8 @@ impl Analysis {
             models: Vec::new(),
             witnesses: Vec::new(),
             apexes: Vec::new(),
+            eps: 0.0,
+            radii: None,
         }
     }
 
@@ -76,6 +81,11 @@ impl Analysis {
     /// What became of every model, in the order in which they were given.
     pub fn models(&self) -> &[ModelCounts] {
         &self.models
+    }
+
+    /// Radius of the neighborhood of a row.
+    pub(in crate::stratify) fn radius(&self, row: Row) -> f64 {
+        self.radii.as_ref().map_or(self.eps, |radii| radii[row])
     }
 
     /// Enters what a point turned out to be.

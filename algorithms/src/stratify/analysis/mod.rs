@@ -46,6 +46,7 @@ impl<'a, S: Scalar> Analyzer<'a, S> {
         }
         let looked_at = !options.surface || self.models.iter().any(|m| m.finds_boundary());
         if looked_at {
+            (out.eps, out.radii) = (options.eps, options.radii.clone());
             let fitter = self.fitter("since curves and boundaries are looked for in them")?;
             fitter.look(options, &boundary, &mut out)?;
             out.models = fitter.counts();

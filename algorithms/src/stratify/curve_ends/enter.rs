@@ -37,13 +37,12 @@ pub(super) fn enter<S: Scalar>(
 fn stand_in<S: Scalar>(strata: &mut Strata, cloud: &PointCloud<S>, region: &EndRegion) {
     let far = |row: Row| region.far(cloud, row);
     let nearest = (region.rows()).min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
-    let fit = region.rows().find_map(|r| strata.sites()[r].on()?.fit);
     if let Some(row) = nearest {
         let on = On {
             kind: StratumKind::Point,
             place: Some(region.place.clone().into()),
             moved: far(row),
-            fit,
+            fit: Some(region.used),
             cells: 0,
         };
         strata.enter(cloud, row, Some(on));

@@ -1,5 +1,6 @@
 //! Landmarks next to the end of a curve.
 
+use super::EndRegion;
 use crate::stratify::strata::Strata;
 use crosscap_core::Row;
 
@@ -11,7 +12,9 @@ pub(in crate::stratify) fn innermost(strata: &Strata, within: f64) -> Vec<Row> {
         return Vec::new();
     };
     let mut out = Vec::new();
-    for region in strata.regions() {
+    // Where there is one cell alone, no triangle is that of several.
+    let several = |region: &&EndRegion| region.fit.labels_of(2).count() > 1;
+    for region in strata.regions().iter().filter(several) {
         let on_curves: Vec<Row> = region.rows().filter(|&r| !strata.is_regular(r)).collect();
         let clear = |row: Row| {
             let squares = on_curves.iter();

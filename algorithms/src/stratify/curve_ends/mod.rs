@@ -1,6 +1,7 @@
-//! Points at which curves end inside a sheet: what is there is asked of models that say so, with balls as
+//! Points at which curves end inside a sheet, and corners of boundaries: what is there is asked of models that say so, with balls as
 //! wide as it takes, and their answers stand for all points about the end.
 
+mod corners;
 mod enter;
 mod free;
 mod innermost;
@@ -12,7 +13,7 @@ pub(super) use innermost::innermost;
 pub(super) use region::{EndRegion, Settled};
 pub(super) use wards::Wards;
 
-use super::analysis::{Analyzer, Scratch};
+use super::analysis::{Analysis, Analyzer, Fitter, Scratch};
 use super::site::{Site, StratumKind};
 use super::strata::Strata;
 use crosscap_core::{Error, Row, Scalar};
@@ -22,23 +23,56 @@ use part::Answer;
 /// A region, and what becomes of its rows.
 type Found = (EndRegion, Vec<Settled>);
 
-/// Asks what is at the ends of double curves, and enters the answers. Where no curve was found, or no model
-/// knows of ends, nothing is done.
+/// Asks what is at the ends of double curves and about points of boundaries that were found, and enters the answers. Where no curve
+/// was found, or no model knows of ends, nothing is done.
 ///
 /// # Errors
 /// [`Error::Law`] for what a model breaks.
 pub(super) fn explain<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
+    analysis: &Analysis,
     strata: &mut Strata,
 ) -> Result<(), Error> {
-    let models: Vec<usize> = (0..analyzer.models.len())
+    let all = 0..analyzer.models.len();
+    let (corners, ends): (Vec<usize>, Vec<usize>) = all
         .filter(|&m| analyzer.models[m].explains_ends())
-        .collect();
-    let on_curve = |site: &Site| site.kind() == Some(StratumKind::Curve);
-    if models.is_empty() || !strata.sites().iter().any(on_curve) {
+        .partition(|&m| analyzer.models[m].finds_boundary());
+    let there = |kind| move |site: &Site| site.kind() == Some(kind);
+    let any = |kind| strata.sites().iter().any(there(kind));
+    let has_ends = !ends.is_empty() && any(StratumKind::Curve);
+    let has_corners = !corners.is_empty() && any(StratumKind::Boundary);
+    if !has_ends && !has_corners {
         return Ok(());
     }
     let fitter = analyzer.fitter("since ends of curves are looked at in them")?;
+    let tuning = &analyzer.tuning.ends;
+    let mut answers = match has_ends {
+        true => of_curves(analyzer, &fitter, strata, &ends),
+        false => Vec::new(),
+    };
+    if has_corners {
+        let more = corners::answers(analyzer, &fitter, analysis, strata, &corners, &answers);
+        answers.extend(more);
+    }
+    // A pinch point has no boundary: its balls are wide enough for its sheets to open, and what was seen there before is wrong.
+    let sheets_end = |a: &&mut Answer| a.region.fit.cells_at_curve.contains(&1);
+    for answer in answers.iter_mut().filter(sheets_end) {
+        answer.keep_clear(fitter.cloud, |row| !strata.is_regular(row), tuning.overlap);
+    }
+    part::part(fitter.cloud, &mut answers, tuning.overlap);
+    for answer in answers {
+        enter::enter(strata, fitter.cloud, answer, tuning);
+    }
+    fitter.faults.none()
+}
+
+/// What the `models` say about the ends of double curves.
+fn of_curves<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    fitter: &Fitter<'_, S>,
+    strata: &Strata,
+    models: &[usize],
+) -> Vec<Answer> {
     let tuning = &analyzer.tuning.ends;
     let mut scratch = Scratch::default();
     let mut answers: Vec<Answer> = Vec::new();
@@ -69,14 +103,5 @@ pub(super) fn explain<S: Scalar>(
             });
         }
     }
-    // A pinch point has no boundary: its balls are wide enough for its sheets to open, and what was seen there before is wrong.
-    let sheets_end = |a: &&mut Answer| a.region.fit.cells_at_curve.contains(&1);
-    for answer in answers.iter_mut().filter(sheets_end) {
-        answer.keep_clear(fitter.cloud, |row| !strata.is_regular(row), tuning.overlap);
-    }
-    part::part(fitter.cloud, &mut answers, tuning.overlap);
-    for answer in answers {
-        enter::enter(strata, fitter.cloud, answer, tuning);
-    }
-    fitter.faults.none()
+    answers
 }

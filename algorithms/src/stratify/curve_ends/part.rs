@@ -53,7 +53,7 @@ impl Answer {
     }
 
     /// Leaves of the region what is nearer than `limit` to its point.
-    fn cut<S: Scalar>(&mut self, cloud: &PointCloud<S>, limit: f64, overlap: f64) {
+    pub(super) fn cut<S: Scalar>(&mut self, cloud: &PointCloud<S>, limit: f64, overlap: f64) {
         let region = &mut self.region;
         if limit >= region.reach {
             return;
@@ -71,6 +71,7 @@ impl Answer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stratify::site::FitUsed;
     use crosscap_core::{Decomposition, Stratum};
 
     /// A region about a place on a line of points one tenth apart.
@@ -85,7 +86,11 @@ mod tests {
             center: vec![at],
             center_offset: 0.0,
         };
-        let mut region = EndRegion::new([Vec::new(), Vec::new()], fit, vec![at], reach);
+        let used = FitUsed {
+            model: 0,
+            radius: 1.0,
+        };
+        let mut region = EndRegion::new([Vec::new(), Vec::new()], fit, vec![at], reach, used);
         let rows: Vec<Row> = (0..cloud.len())
             .map(Row::new)
             .filter(|&r| region.far(cloud, r) < reach)

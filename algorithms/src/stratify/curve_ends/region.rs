@@ -1,6 +1,6 @@
 //! The points about the end of a curve.
 
-use crate::stratify::site::On;
+use crate::stratify::site::{FitUsed, On};
 use crosscap_core::{Decomposition, Label, PointCloud, Row, Scalar, squared_distance};
 
 /// A point at which a curve ends, with the points about it.
@@ -16,6 +16,8 @@ pub(in crate::stratify) struct EndRegion {
     pub(in crate::stratify) place: Vec<f64>,
     /// How far from it the region reaches.
     pub(in crate::stratify) reach: f64,
+    /// The fit that says so.
+    pub(in crate::stratify) used: FitUsed,
 }
 
 /// What becomes of a row of a region.
@@ -28,13 +30,14 @@ pub(in crate::stratify) struct Settled {
 }
 
 impl EndRegion {
-    /// The rows nearer than `reach` to `place`, each with its label and by row, some beyond, and the strata that the
-    /// labels name.
+    /// The rows nearer than `reach` to `place`, each with its label and by row, some beyond, the strata that the
+    /// labels name, and the fit that names them.
     pub(in crate::stratify) fn new(
         [labels, beyond]: [Vec<(Row, Label)>; 2],
         fit: Decomposition,
         place: Vec<f64>,
         reach: f64,
+        used: FitUsed,
     ) -> Self {
         Self {
             labels,
@@ -42,6 +45,7 @@ impl EndRegion {
             fit,
             place,
             reach,
+            used,
         }
     }
 

@@ -198,21 +198,22 @@ mod tests {
             center_offset: 0.0,
         };
         let (labels, place) = ([labels.collect(), Vec::new()], vec![0.0, 0.0]);
+        let used = FitUsed {
+            model: 0,
+            radius: dl,
+        };
         let mut strata = Strata::as_found(&Analysis::of_surface(all.len()), Some(&cloud));
         for (k, row) in strata.rows().enumerate() {
             let on = On {
                 kind: [StratumKind::Boundary, StratumKind::Point][usize::from(k == 0)],
                 place: None,
                 moved: 0.0,
-                fit: (k == 0).then_some(FitUsed {
-                    model: 0,
-                    radius: dl,
-                }),
+                fit: (k == 0).then_some(used),
                 cells: u8::from(k > 0),
             };
             strata.enter(&cloud, row, Some(on));
         }
-        strata.add_region(EndRegion::new(labels, fit, place, REACH * dl));
+        strata.add_region(EndRegion::new(labels, fit, place, REACH * dl, used));
         let metric = Euclidean::new(cloud);
         let oracle = BruteForceOracle::new(&metric);
         let analyzer = Analyzer {

@@ -43,7 +43,7 @@ static ORDER: Law = Law {
     subject: SUBJECT,
     name: "order",
     says: "the same decomposition, up to the names of the strata, for any order of the points",
-    look_for: "row 0 taken for the center (`local.center` says which row it is); starts from the first \
+    look_for: "row 0 taken for the center (`local.center` says which row it is, `local.middle` which the ball is about); starts from the first \
                rows; random samples by row",
 };
 
@@ -64,7 +64,8 @@ static ABOUT: Law = Law {
     says: "decompose_about gives the decomposition of decompose, and of every row, or None, what decompose says with \
            that row as the center, within rounding",
     look_for: "a place of the center given to all rows; answers in another order than the rows, or fewer; the \
-               offset of a row measured from the center; a fit that depends on the center (leave the default)",
+               offset of a row measured from the center; a fit that depends on the \
+               center (leave the default), or that measures the ball from `local.center` where `local.middle` is meant",
 };
 
 /// Cells at curves.

@@ -12,6 +12,7 @@ enum Fault {
     NineCells,
     LostRow,
     CenterForAll,
+    CenterIsMiddle,
     UncountedCell,
     FittedLabels,
     CurvesLast,
@@ -83,6 +84,13 @@ impl SingularityModel for Twin {
                 }
             }
             Fault::FirstRowIsCenter => center = local.point(0).to_vec(),
+            Fault::CenterIsMiddle => {
+                let center = local.point(local.center);
+                let far = |k: usize| crate::squared_distance(local.point(k), center);
+                for (k, label) in labels.iter_mut().enumerate() {
+                    *label = usize::from(far(k) > 0.25 * radius * radius);
+                }
+            }
             Fault::Offset => residual += 1e-4 * radius,
             Fault::NoResidual => residual = 0.0,
             Fault::TwoCells => {
@@ -132,6 +140,18 @@ impl SingularityModel for Twin {
                 let center = fit.located(local.center);
                 located.fill(Some(center));
             }
+            // As a model does whose fit is thought to be that of any center.
+            Fault::CenterIsMiddle => {
+                for (found, &row) in located.iter_mut().zip(rows) {
+                    let (place, dimension) = (local.point(row).to_vec(), fit.dimension_of(row));
+                    *found = Some(Located {
+                        dimension,
+                        cells: 1,
+                        place,
+                        offset: if dimension < 2 { 0.0 } else { f64::INFINITY },
+                    });
+                }
+            }
             _ => {}
         }
         Ok((fit, located))
@@ -151,6 +171,7 @@ fn every_fault_is_caught_by_its_law() {
         (Fault::NineCells, &PARTITION),
         (Fault::LostRow, &ABOUT),
         (Fault::CenterForAll, &ABOUT),
+        (Fault::CenterIsMiddle, &ABOUT),
         (Fault::UncountedCell, &CELLS),
         (Fault::FittedLabels, &PARTITION),
         (Fault::CurvesLast, &PARTITION),

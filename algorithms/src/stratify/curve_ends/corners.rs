@@ -1,0 +1,72 @@
+//! Corners of boundaries that were found.
+
+use super::Found;
+use super::part::Answer;
+use crate::stratify::analysis::{Analysis, Analyzer, Fitter, Scratch};
+use crate::stratify::site::StratumKind;
+use crate::stratify::strata::Strata;
+use crosscap_core::{Row, Scalar};
+
+/// Asks the `models` about points of boundaries that were found, and says where they see corners. Where another end is, nothing is
+/// asked: its model knows of the boundaries there.
+///
+/// O(b) fits for boundaries of b balls.
+pub(super) fn answers<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    fitter: &Fitter<'_, S>,
+    analysis: &Analysis,
+    strata: &Strata,
+    models: &[usize],
+    others: &[Answer],
+) -> Vec<Answer> {
+    let tuning = &analyzer.tuning.ends;
+    let Some(places) = strata.places() else {
+        return Vec::new();
+    };
+    let mut scratch = Scratch::default();
+    let mut out: Vec<Answer> = Vec::new();
+    let mut asked: Vec<Row> = Vec::new();
+    for row in strata.rows().filter(|&row| is_found(strata, row)) {
+        let eps = analysis.radius(row);
+        let place = places.point(row.index());
+        let spacing = (tuning.corner_spacing * eps).powi(2);
+        let near = |a: &Row| places.squared_distance(a.index(), row.index()) < spacing;
+        let known = |a: &Answer| a.region.distance(place) < a.region.reach;
+        if asked.iter().any(near) || others.iter().any(known) {
+            continue;
+        }
+        // About a corner that is known there is nothing to find.
+        if out
+            .iter()
+            .any(|a| a.region.distance(place) < tuning.corner_spacing * eps)
+        {
+            continue;
+        }
+        asked.push(row);
+        let mut found = |factor: &f64| -> Option<Found> {
+            let one = |&m: &usize| fitter.about_end(m, row, factor * eps, eps, &mut scratch);
+            let better = |a: &Found, b: &Found| a.0.fit.residual.total_cmp(&b.0.fit.residual);
+            models.iter().filter_map(one).min_by(better)
+        };
+        let Some((region, settled)) = tuning.corner_radii.iter().find_map(&mut found) else {
+            continue;
+        };
+        // Two balls may show one corner.
+        if out.iter().all(|a| a.region.distance(&region.place) > eps) {
+            let mut answer = Answer {
+                region,
+                settled,
+                eps,
+            };
+            answer.cut(fitter.cloud, tuning.corner_reach * eps, tuning.overlap);
+            out.push(answer);
+        }
+    }
+    out
+}
+
+/// Whether a row is on a boundary that nobody gave.
+fn is_found(strata: &Strata, row: Row) -> bool {
+    let on = strata.sites()[row].on();
+    on.is_some_and(|on| on.kind == StratumKind::Boundary && on.place.is_some())
+}
