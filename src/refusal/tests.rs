@@ -288,13 +288,18 @@ fn two_readings_are_told_and_more_points_decide() {
     let mut readings = [spacings(16.0, 14.0), spacings(5.0, 2.5), spacings(4.2, 2.1)].into_iter();
     let rims = Limits {
         shortest_boundary: 4,
-        significance: 1e-5,
         ..Limits::default()
     };
     let search = Auto::default()
         .search(Input::Points(&cloud.points), &mut |asked| {
+            // The first attempt, with landmarks far apart, is refused for the hole.
+            let significance = if readings.len() == 3 { 1e-3 } else { 1e-5 };
             let reading = readings.next().unwrap_or(asked);
-            Ok(Pipeline::new(reading)?.limits(rims.clone()))
+            let limits = Limits {
+                significance,
+                ..rims.clone()
+            };
+            Ok(Pipeline::new(reading)?.limits(limits))
         })
         .unwrap();
     let tried: Vec<_> = search.attempts.iter().map(|a| a.end.clone()).collect();
