@@ -1,6 +1,7 @@
 //! The largest empty disc, and the places of the mesh that are far from the points.
 
 use super::chance::{self, LEVELS};
+use super::evenness::Evenness;
 use super::ground::COUNTED;
 use super::nearby::{Nearby, SPARE};
 use super::search::Search;
@@ -135,7 +136,8 @@ impl Search<'_> {
         let measure =
             |found: &Expected| chance::known(self.even.random(found.points), found.counted);
         let on_mesh = (measure(&found), away, found);
-        let in_points = (!self.varies)
+        // How even a sample is was read off the distances on the mesh: what is farther in the points is no rarer for it.
+        let in_points = (!self.varies && self.even == Evenness::RANDOM)
             .then(|| self.disc_in_points(tile.triangle, place, away, away / tile.away))
             .flatten()
             .map(|disc| (measure(&disc.expected), disc.radius, disc.expected));
