@@ -86,7 +86,10 @@ impl BoundaryCorner {
         if found.turn < 0.0 && found.below_arm > tuning.arm {
             return Err(Rejection::NoRealSolution);
         }
-        if found.in_tip > tuning.tip || found.missing < tuning.missing {
+        // A tip that one point alone holds is an outlier.
+        let [first, second] = found.in_tip;
+        let bare = first > tuning.tip || second > 2.0 * tuning.tip;
+        if bare || found.missing < tuning.missing {
             return Err(Rejection::EmptyStratum {
                 stratum: 0,
                 found: found.missing.max(0.0) as usize,
@@ -315,6 +318,23 @@ mod tests {
             }
         }
         Instance::new(3, RADIUS, &points).principal()
+    }
+
+    #[test]
+    fn a_point_that_lies_off_a_straight_boundary_is_no_corner() {
+        let spike = plate(|p| p[0] > 0.25 || p[0].hypot(p[1]) < 0.01);
+        let local = about_first(&spike, RADIUS);
+        let model = BoundaryCorner::new(0.1, 0.08).unwrap();
+        let found = model.decompose(&local);
+        let bare = matches!(found, Err(Rejection::EmptyStratum { stratum: 0, .. }));
+        assert!(bare, "{found:?}");
+        // But for this one condition it is.
+        let tip = f64::INFINITY;
+        let tuning = BoundaryCornerTuning {
+            tip,
+            ..BoundaryCornerTuning::MEASURED
+        };
+        assert!(model.tuned(tuning).decompose(&local).is_ok());
     }
 
     #[test]

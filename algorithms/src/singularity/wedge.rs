@@ -31,8 +31,8 @@ pub(super) struct Wedge {
 pub(super) struct Evidence {
     /// Turn of the boundary at the corner, in radians; negative where it goes inward.
     pub(super) turn: f64,
-    /// Points that would have to lie between the corner and the one nearest to it.
-    pub(super) in_tip: f64,
+    /// Points that would have to lie between the corner and the one nearest to it, and the next.
+    pub(super) in_tip: [f64; 2],
     /// Points that would have to lie between one of the arms and the points below it.
     pub(super) below_arm: f64,
     /// Points that would have to lie between the corner and the smooth boundary that comes nearest to it.
@@ -99,16 +99,15 @@ impl Laid<'_> {
             .iter()
             .map(|p| [p[0] - t, p[1] - v])
             .collect();
-        let nearest = about
-            .iter()
-            .map(|p| p[0].hypot(p[1]))
-            .fold(f64::INFINITY, f64::min);
+        let mut far: Vec<f64> = about.iter().map(|p| p[0].hypot(p[1])).collect();
+        far.sort_by(f64::total_cmp);
+        let nearest = [0, 1].map(|k| far.get(k).copied().unwrap_or(f64::INFINITY));
         // Over the middle, and over both arms.
         let over = |slope: f64| [0, 1].map(|i| axes.out[i] - slope * axes.along[i]);
         let smooth = [0.0, before, behind].map(|slope| self.beyond_smooth(over(slope)));
         Evidence {
             turn: PI - inner,
-            in_tip: density * inner / 2.0 * nearest * nearest,
+            in_tip: nearest.map(|far| density * inner / 2.0 * far * far),
             below_arm: density * empty_below(&about, kink),
             missing: density * (beyond - smooth.into_iter().fold(0.0, f64::max)),
         }

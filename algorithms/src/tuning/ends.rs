@@ -165,6 +165,7 @@ pub struct BoundaryCornerTuning {
     /// holes and a square with round corners there were up to 7, at nearly all corners of 36 to 110 degrees, and of 235 and 270, more.
     pub missing: f64,
     /// Most points that may be missing between the corner and the point nearest to it: so many are by chance in one of 50 places.
+    /// Between it and the next, at most twice as many: a point that lies off the boundary by itself is no corner.
     pub tip: f64,
     /// Most points that may be missing below an arm of a corner that goes inward, in any sector from the corner to the first point. The lowest curve over a notch of less than
     /// 80 degrees can lie in the air beside one of its sides (60 degrees: 56 of 200 random ones, the corner up to 0.56 radii off). So many are missing by chance in one of 500 corners.

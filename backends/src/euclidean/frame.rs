@@ -20,6 +20,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
+    /// That of a cloud. O(n N).
     pub(super) fn of<S: Scalar>(cloud: &PointCloud<S>) -> Self {
         let n = cloud.dimension();
         let mut mean = vec![0.0; n];
@@ -91,6 +92,7 @@ impl Frame {
         }
         square.sqrt()
     }
+
     /// The tree's coordinates of all points, [`tree_dimension`](Self::tree_dimension) of them each.
     pub(super) fn places<S: Scalar>(&self, cloud: &PointCloud<S>) -> Vec<f64> {
         let width = self.tree_dimension();
