@@ -5,6 +5,8 @@ use crosscap_algorithms::metric::{Lifted, tangent_planes};
 use crosscap_algorithms::prepare::LocalSpacing;
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::ChartSpace;
+use crosscap_algorithms::tangents::TangentField;
+use crosscap_algorithms::tuning::TangentTuning;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric, GraphReport};
 use crosscap_backends::parallel::Threads;
@@ -95,8 +97,17 @@ impl Engines {
             (Some(lifted), MetricName::Lifted) => (lifted, Some(flat)),
             (lifted, _) => (flat, lifted),
         };
+        let sheets = if spaces.sheets && spaces.uses(MetricName::Geodesic) {
+            let cloud = euclidean.cloud();
+            let field = TangentField::new(cloud, &euclidean, &TangentTuning::MEASURED, threads)?;
+            Some(field)
+        } else {
+            None
+        };
         let geodesic = if spaces.uses(MetricName::Geodesic) {
-            Some(threads.install(|| GeodesicMetric::new(&euclidean, spaces.graph))?)
+            let joins = |a, b| sheets.as_ref().is_none_or(|field| field.joins(a, b));
+            let build = || GeodesicMetric::joining(&euclidean, spaces.graph, &joins);
+            Some(threads.install(build)?)
         } else {
             None
         };

@@ -127,6 +127,9 @@ pub struct Spaces {
     /// Which points the graph of geodesic distances joins.
     #[serde(serialize_with = "shown")]
     pub graph: EdgeRule,
+    /// Edges of the graph join points of one sheet alone, as tangent planes tell sheets apart: a path
+    /// then crosses a sharp crease where it is. See [`TangentField`](crosscap_algorithms::tangents::TangentField).
+    pub sheets: bool,
     /// Distance at which the lifted metric holds two sheets apart that cross at a right angle, unit of
     /// the data; 2 eps when left out.
     pub lift: Option<f64>,
@@ -153,6 +156,7 @@ impl Default for Spaces {
             metric: MetricName::default(),
             tri_metric: None,
             graph: EdgeRule::Nearest(GRAPH_NEAREST),
+            sheets: false,
             lift: None,
             neighborhoods: Neighborhoods::default(),
             wide_charts: false,

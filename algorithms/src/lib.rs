@@ -30,6 +30,7 @@ mod spectrum;
 pub mod stratify;
 mod stretch;
 pub mod surfaces;
+pub mod tangents;
 pub mod tiles;
 pub mod triangulate;
 pub mod tuning;

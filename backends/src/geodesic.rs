@@ -204,7 +204,24 @@ impl<S: Scalar> GeodesicMetric<S> {
         Self::with_lengths(oracle, rule, &shrunk)
     }
 
-    /// A graph whose edges are as long as `length` makes of their ends and what the oracle says.
+    /// The edges of the rule that `joins` lets stand, asked with both ends: without those that lead from one sheet to
+    /// another, paths cross a sharp crease where it is and not on the way.
+    ///
+    /// # Errors
+    /// Those of [`GeodesicMetric::new`].
+    pub fn joining(
+        oracle: &dyn NeighborhoodOracle<Scalar = S>,
+        rule: EdgeRule,
+        joins: &(dyn Fn(usize, usize) -> bool + Sync),
+    ) -> Result<Self, Error> {
+        let standing = |a: usize, b: usize, length: f64| {
+            if joins(a, b) { length } else { f64::INFINITY }
+        };
+        Self::with_lengths(oracle, rule, &standing)
+    }
+
+    /// A graph whose edges are as long as `length` makes of their ends and what the oracle says; one of infinite length
+    /// is none.
     fn with_lengths(
         oracle: &dyn NeighborhoodOracle<Scalar = S>,
         rule: EdgeRule,
@@ -239,6 +256,7 @@ impl<S: Scalar> GeodesicMetric<S> {
                 for (other, far) in &mut edges {
                     *far = length(point, *other as usize, *far);
                 }
+                edges.retain(|edge| edge.1.is_finite());
                 Ok(edges)
             })
             .collect::<Result<Vec<_>, Error>>()?;

@@ -27,7 +27,9 @@ pub enum Move {
     Unfolded,
     /// The same, every point taken as one of a closed surface that does not cross itself.
     Closed,
-    /// The same, of a surface that may end and does not cross itself.
+    /// The same, distances by paths that keep to one side of a crease until they cross it.
+    Creased,
+    /// The same as closed, of a surface that may end and does not cross itself.
     Ending,
     /// Every point taken as one of a closed surface that does not cross itself, landmarks and charts by the spacing of the
     /// points, which varies much.
@@ -66,6 +68,7 @@ impl Move {
             Self::Closed => {
                 "every point taken as one of a closed surface that does not cross itself, charts by distances along it"
             }
+            Self::Creased => "distances along the surface by paths that do not leave it at a crease",
             Self::Ending => {
                 "every point taken as one of a surface that may end and does not cross itself, charts by distances along it"
             }
@@ -114,6 +117,7 @@ impl Move {
                 })
             }
             Self::Closed => one_surface(from, pinned, ModelName::TwoPlanes),
+            Self::Creased => creased(from, pinned),
             Self::Ending => one_surface(from, pinned, ModelName::Boundary),
             Self::Spaced => spaced(from, pinned, density),
             _ => None,
@@ -179,6 +183,18 @@ fn one_surface(first: &Parameters, pinned: &Pinned, model: ModelName) -> Option<
             ..first.spaces.clone()
         },
         ..first.clone()
+    })
+}
+
+/// The same with a graph that joins points of one sheet alone, where distances go along one surface.
+fn creased(from: &Parameters, pinned: &Pinned) -> Option<Parameters> {
+    let along = from.surface && from.spaces.metric == MetricName::Geodesic;
+    (along && pinned.sheets.is_none()).then(|| Parameters {
+        spaces: Spaces {
+            sheets: true,
+            ..from.spaces.clone()
+        },
+        ..from.clone()
     })
 }
 

@@ -42,6 +42,8 @@ pub struct Pinned {
     pub tri_metric: Option<MetricName>,
     /// [`Spaces::graph`].
     pub graph: Option<EdgeRule>,
+    /// [`Spaces::sheets`].
+    pub sheets: Option<bool>,
     /// [`Spaces::lift`].
     pub lift: Option<f64>,
     /// [`Spaces::neighborhoods`].
@@ -132,6 +134,7 @@ impl Pinned {
                 metric: self.metric.unwrap_or(spaces.metric),
                 tri_metric: self.tri_metric,
                 graph: self.graph.unwrap_or(spaces.graph),
+                sheets: self.sheets.unwrap_or(spaces.sheets),
                 lift: self.lift,
                 neighborhoods: self.neighborhoods.unwrap_or(spaces.neighborhoods),
                 wide_charts: spaces.wide_charts,

@@ -205,6 +205,7 @@ impl ParameterArguments {
             metric: self.spaces.metric,
             tri_metric: self.spaces.tri_metric,
             graph: self.spaces.graph.rule(),
+            sheets: self.spaces.graph.graph_sheets.then_some(true),
             lift: self.spaces.graph.lift,
             neighborhoods: self.spaces.neighborhoods,
             prepare: self.prepare,

@@ -69,6 +69,9 @@ fn flags(pinned: &Pinned, chosen: &Parameters) -> Vec<String> {
     if pinned.neighborhoods.is_none() && spaces.neighborhoods != Neighborhoods::default() {
         add("neighborhoods", spaces.neighborhoods.to_string());
     }
+    if pinned.sheets.is_none() && spaces.sheets {
+        out.push("--graph-sheets".into());
+    }
     if pinned.surface.is_none() && chosen.surface {
         out.push("--surface".into());
     }

@@ -16,6 +16,10 @@ pub struct GraphArguments {
     #[arg(long, hide_short_help = true, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
     pub graph_k: Option<u32>,
 
+    /// Join points of one sheet alone in that graph, as tangent planes tell sheets apart: for sharp creases
+    #[arg(long, hide_short_help = true)]
+    pub graph_sheets: bool,
+
     /// How far apart the lifted metric holds two sheets that cross at a right angle, unit of the data
     /// [default: 2 eps]
     #[arg(long, hide_short_help = true, value_name = "L", value_parser = positive)]
@@ -37,6 +41,7 @@ impl GraphArguments {
         let usual = Spaces::default();
         Spaces {
             graph: self.rule().unwrap_or(usual.graph),
+            sheets: self.graph_sheets,
             lift: self.lift,
             ..usual
         }

@@ -9,6 +9,7 @@ mod front;
 mod models;
 mod pages;
 mod preparation;
+mod tangents;
 
 pub use ends::{
     BookEndTuning, BookTuning, BoundaryCornerTuning, CurveEndTuning, PinchPointTuning, RimTuning,
@@ -24,6 +25,8 @@ pub use preparation::{
     NoiseTuning, OutlierTuning, PreparationTuning, ProjectionTuning, ResolutionTuning,
     SubspaceTuning,
 };
+
+pub use tangents::TangentTuning;
 
 use serde::{Deserialize, Serialize};
 
