@@ -7,6 +7,9 @@ use crate::certificate::incidence::Incidence;
 use crate::certificate::tree::Tree;
 use crosscap_core::{Mesh, PointCloud, squared_distance};
 
+/// Weight of a corner up to which a place is on the opposite side: what rounding leaves of zero.
+const TIE: f64 = 1e-9;
+
 /// The nearest places of the mesh to the input points, in the order of their rows.
 ///
 /// A sample on a surface with noise becomes a sample on the mesh, so that its gaps are measured
@@ -14,7 +17,7 @@ use crosscap_core::{Mesh, PointCloud, squared_distance};
 pub(in crate::certificate) struct Footprints {
     /// Rows of the input.
     pub rows: Vec<u32>,
-    /// The triangle each stands on, or the number of triangles plus the number of the curve edge
+    /// The triangle each stands on, the first of several, or the number of triangles plus the number of the curve edge
     /// without triangles.
     pub items: Vec<u32>,
     /// The places, one after the other.
@@ -69,13 +72,16 @@ impl Footprints {
             };
             let sides = shape(item as usize);
             let weights = nearest_weights(row, sides);
-            all.items.push(item);
             all.places.extend((0..row.len()).map(|k| {
                 weights[0] * sides[0][k] + weights[1] * sides[1][k] + weights[2] * sides[2][k]
             }));
             all.heights.push(square.sqrt());
-            let beyond = (item as usize) < count
-                && (0..3).any(|k| weights[k] <= 0.0 && open[item as usize] >> k & 1 == 1);
+            let (item, beyond) = if (item as usize) < count {
+                owner(mesh, incidence, &open, item, weights)
+            } else {
+                (item, false)
+            };
+            all.items.push(item);
             all.on_boundary.push(beyond);
         }
         all
@@ -91,6 +97,36 @@ impl Footprints {
         let width = self.places.len() / self.rows.len().max(1);
         &self.places[index * width..(index + 1) * width]
     }
+}
+
+/// The triangle that a place of triangle `t` counts for, and whether it is on the boundary of the mesh.
+///
+/// Over an edge that bends outward the nearest place of many points is on that edge, as near by each of its triangles. Rounding would
+/// choose one, and another one where the data is turned; so the first of them is taken.
+fn owner(
+    mesh: &Mesh,
+    incidence: &Incidence,
+    open: &[u8],
+    t: u32,
+    weights: [f64; 3],
+) -> (u32, bool) {
+    let triangles = &mesh.complex.triangles;
+    let own = triangles[t as usize];
+    let holds = |corner: &u32| own.iter().zip(weights).any(|(c, w)| c == corner && w > TIE);
+    let held = weights.iter().filter(|w| **w > TIE).count();
+    let Some(first) = own.iter().find(|c| holds(c)).filter(|_| held < 3) else {
+        return (t, false);
+    };
+    let (mut least, mut on_boundary) = (t, false);
+    for &other in incidence.at_vertex(*first as usize) {
+        let corners = triangles[other as usize];
+        if corners.iter().filter(|c| holds(c)).count() == held {
+            least = least.min(other);
+            on_boundary |=
+                (0..3).any(|k| open[other as usize] >> k & 1 == 1 && !holds(&corners[k]));
+        }
+    }
+    (least, on_boundary)
 }
 
 /// For every triangle the sides (bit k: opposite corner k) that no other triangle has.
@@ -152,6 +188,9 @@ pub(super) fn nearest_weights(point: &[f64], [a, b, c]: [&[f64]; 3]) -> [f64; 3]
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::certificate::geometry;
+    use crate::surfaces::{Random, RigidMotion};
+    use crosscap_core::{Complex, CurveEdge};
     use proptest::prelude::*;
 
     proptest! {
@@ -164,6 +203,48 @@ mod tests {
             let at: Vec<f64> = (0..4).map(|k| w[0] * t[0][k] + w[1] * t[1][k] + w[2] * t[2][k]).collect();
             let square = point_triangle(p, t[0], t[1], t[2]);
             prop_assert!((squared_distance(&at, p) - square).abs() < 1e-12);
+        }
+    }
+
+    /// A pyramid without its base, over which many points are nearest to an edge or to the tip. However it is turned, each point counts for
+    /// the same triangle, the first that holds its nearest place, and is on the boundary or not.
+    #[test]
+    fn a_point_over_an_edge_counts_for_the_same_triangle_however_the_data_is_turned() {
+        let rim = |k: u32| f64::from(k) * 0.4 * std::f64::consts::PI;
+        let mut places = vec![0.0, 0.0, 0.7];
+        places.extend((0..5).flat_map(|k| [rim(k).cos(), rim(k).sin(), 0.0]));
+        let triangles = (0..5).map(|k| {
+            let mut corners = [0, 1 + k, 1 + (k + 1) % 5];
+            corners.sort_unstable();
+            corners
+        });
+        let rims = (0..5).map(|k| CurveEdge::new(1 + k, 1 + (k + 1) % 5, 1));
+        let complex = Complex::new(6, triangles.collect(), rims.collect()).unwrap();
+        let mut random = Random::stream(5, 0);
+        let rows: Vec<f64> = (0..300).map(|_| random.between(-1.5, 1.5)).collect();
+        let standing = |motion: Option<RigidMotion>| {
+            let moved = |rows: &[f64]| {
+                let cloud = PointCloud::new(3, rows.to_vec()).unwrap();
+                motion
+                    .as_ref()
+                    .map_or(cloud.clone(), |m| m.apply(&cloud).unwrap())
+            };
+            let (vertices, points) = (moved(&places), moved(&rows));
+            let mesh = Mesh::new(complex.clone(), vertices, vec![-1; 6]).unwrap();
+            let incidence = Incidence::new(&mesh.complex);
+            let frame = Frame::new(&mesh.vertices, Some(&points));
+            let tree = geometry::tree(&mesh, &frame, &[]);
+            let feet = Footprints::new(&mesh, &incidence, &frame, &tree, &[], &points, 0..100);
+            (feet.items, feet.on_boundary)
+        };
+        let plain = standing(None);
+        assert!(plain.1.contains(&true) && plain.1.contains(&false));
+        for seed in 0..5 {
+            assert_eq!(
+                standing(Some(RigidMotion::random(3, 2.0, seed))),
+                plain,
+                "{seed}"
+            );
         }
     }
 }

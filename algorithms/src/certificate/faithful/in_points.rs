@@ -2,8 +2,8 @@
 //!
 //! A mesh of few triangles is a polyhedron: points are squeezed together where they are put down on it, most of all at its edges, and a
 //! hole is narrower on it than it is. So the disc is measured once more on a quadratic patch through the points themselves, with their
-//! density around. The distances are straight ones: of a sphere the area within a distance r is pi r^2 exactly, and of other surfaces
-//! it is that but for (r (k1 - k2))^2 / 32 of it, k1 and k2 being the curvatures.
+//! density around. The distances are straight ones: of a sphere the area within a distance r is pi r^2 exactly, and of another surface
+//! with curvatures k1 and k2 it is larger by (r (k1 - k2))^2 / 32 of that, up to terms of the fourth order.
 
 use super::ground::COUNTED;
 use super::patch::Patch;
@@ -22,7 +22,8 @@ const WANTED: f64 = 3.0 * COUNTED;
 const PATCH: f64 = 2.2;
 /// Scatter of the points about the patch, in radii of the disc, above which it is none.
 const SCATTER: f64 = 0.25;
-/// Radius of what is counted times how much the patch bends, at most: the area is then off by a sixteenth and less, that of a cylinder most.
+/// Radius of what is counted times how much the patch bends, at most: on a sphere it is then no more than that of the sphere, and the area
+/// of a saddle is larger by an eighth than that of a disc.
 const BENT: f64 = 1.4;
 /// The middle is looked for so far about the place, in radii of the disc, in steps of a third of that, and again about what was found.
 const ABOUT: f64 = 0.6;
@@ -71,13 +72,14 @@ impl Search<'_> {
         let outer = last.unwrap_or(farthest * farthest);
         // what noise across the surface adds to a square
         let inner = square - patch.scatter * patch.scatter;
-        let ring = outer - square;
+        let area = |square: f64| PI * square * (1.0 + square * patch.twist() / 32.0);
+        let ring = area(outer) - area(square);
         (points >= COUNTED && inner > 0.0 && ring > 0.0).then(|| {
-            let density = points / (PI * ring);
+            let density = points / ring;
             PointDisc {
                 radius: inner.sqrt(),
                 expected: Expected {
-                    points: PI * inner * density,
+                    points: area(inner) * density,
                     density,
                     counted: points,
                 },

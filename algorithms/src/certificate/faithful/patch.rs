@@ -78,6 +78,13 @@ impl Patch {
         sum.sqrt() / (self.scale * self.scale)
     }
 
+    /// The square of the difference of its principal curvatures, that of all coordinates of the height added up: 0 for a sphere, 1 / r^2
+    /// for a cylinder of radius r, 4 / r^2 for a saddle of curvatures 1 / r and -1 / r.
+    pub fn twist(&self) -> f64 {
+        let square = |c: &[f64; TERMS]| 4.0 * (c[3] - c[5]).powi(2) + 4.0 * c[4] * c[4];
+        self.height.iter().map(square).sum::<f64>() / self.scale.powi(4)
+    }
+
     /// The plane of largest spread, about the mean of the points.
     fn plane(&mut self, n: usize) -> bool {
         let count = self.rows.len() / n;
@@ -295,6 +302,8 @@ mod tests {
         assert!((at[2] - (0.3 * u * u - 0.1 * u * v)).abs() < 0.05, "{at:?}");
         assert!((at[3] - 0.2 * v * v).abs() < 0.05, "{at:?}");
         assert!((patch.bend() - 0.735).abs() < 0.1, "{}", patch.bend());
+        // 0.6, 0 and -0.1 in the first coordinate, 0, 0.4 and 0 in the second
+        assert!((patch.twist() - 0.56).abs() < 0.1, "{}", patch.twist());
         let line: Vec<[f64; 3]> = (0..30).map(|k| [f64::from(k), 0.0, 0.0]).collect();
         assert!(!patch.fit(&[0.0; 3], line.iter().map(|r| &r[..])));
         assert!(!patch.fit(&[0.0; 3], line[..5].iter().map(|r| &r[..])));
