@@ -1,7 +1,7 @@
 //! Each kind of gap on data made here, and its right twin.
 
 mod curves;
-mod spheres;
+mod in_points;
 
 use crate::certificate::{Certificate, CertificateOptions, ViolationKind, certify};
 use crosscap_core::{Complex, CurveEdge, Mesh, PointCloud};

@@ -1,7 +1,9 @@
-//! Holes under meshes of few triangles.
+//! Empty discs measured in the points themselves.
 
+use super::{POINTS, plate, sample};
 use crate::certificate::faithful::footprints::Footprints;
 use crate::certificate::faithful::ground::Ground;
+use crate::certificate::faithful::in_points::PointDisc;
 use crate::certificate::faithful::search::Search;
 use crate::certificate::frame::Frame;
 use crate::certificate::geometry;
@@ -59,6 +61,23 @@ fn sphere_with_hole(seed: u64, count: usize, middle: [f64; 3], radius: f64) -> P
     PointCloud::new(3, rows).unwrap()
 }
 
+/// The radius of the largest empty disc on a mesh, and that disc in the points.
+fn largest_disc(mesh: &Mesh, points: &PointCloud<f64>) -> (f64, Option<PointDisc>) {
+    let (incidence, count) = (Incidence::new(&mesh.complex), points.len());
+    let frame = Frame::new(&mesh.vertices, Some(points));
+    let tree = geometry::tree(mesh, &frame, &[]);
+    let feet = Footprints::new(mesh, &incidence, &frame, &tree, &[], points, 0..count);
+    let ground = Ground::new(mesh, &incidence, &feet);
+    let search = Search::new(mesh, &incidence, &feet, &ground, points, count);
+    let (tiles, middles) = search.far_tiles();
+    let widest = (0..tiles.len()).max_by(|&a, &b| tiles[a].away.total_cmp(&tiles[b].away));
+    let tile = &tiles[widest.unwrap()];
+    let place = &middles[3 * widest.unwrap()..][..3];
+    let (away, _) = search.distances(place);
+    let disc = search.disc_in_points(tile.triangle, place, away, away / tile.away);
+    (away, disc)
+}
+
 /// On a mesh of few triangles a hole of a sphere is narrower than in the points, which are squeezed together at its edges. In the points
 /// it is as wide as it is, and what is expected in it is what the sphere would have there.
 #[test]
@@ -68,18 +87,7 @@ fn a_hole_under_a_coarse_mesh() {
     let radius = 2.6 * (4.0 * std::f64::consts::PI / count as f64).sqrt();
     for seed in 0..6 {
         let points = sphere_with_hole(seed, count, middle, radius);
-        let incidence = Incidence::new(&mesh.complex);
-        let frame = Frame::new(&mesh.vertices, Some(&points));
-        let tree = geometry::tree(&mesh, &frame, &[]);
-        let feet = Footprints::new(&mesh, &incidence, &frame, &tree, &[], &points, 0..count);
-        let ground = Ground::new(&mesh, &incidence, &feet);
-        let search = Search::new(&mesh, &incidence, &feet, &ground, &points, count);
-        let (tiles, middles) = search.far_tiles();
-        let widest = (0..tiles.len()).max_by(|&a, &b| tiles[a].away.total_cmp(&tiles[b].away));
-        let tile = &tiles[widest.unwrap()];
-        let place = &middles[3 * widest.unwrap()..][..3];
-        let (away, _) = search.distances(place);
-        let disc = search.disc_in_points(tile.triangle, place, away, away / tile.away);
+        let (away, disc) = largest_disc(&mesh, &points);
         let disc = disc.expect("the sphere has neither an end nor a curve");
         assert!(
             disc.radius > radius && disc.radius > 1.02 * away,
@@ -90,5 +98,37 @@ fn a_hole_under_a_coarse_mesh() {
         let truly = count as f64 * disc.radius * disc.radius / (4.0 - radius * radius);
         let found = disc.expected.points / truly;
         assert!((0.8..1.2).contains(&found), "{seed}: {found} of {truly}");
+    }
+}
+
+/// The plate folded along its second axis to two half planes at an angle.
+fn folded(places: &PointCloud<f64>, angle: f64) -> PointCloud<f64> {
+    let (sine, cosine) = (0.5 * angle).to_radians().sin_cos();
+    let rows = places.coordinates().chunks_exact(3);
+    let rows = rows.flat_map(|p| [p[0] * sine, p[1], -p[0].abs() * cosine]);
+    PointCloud::new(3, rows.collect()).unwrap()
+}
+
+/// Beside a crease a ball holds more of a surface than a disc does, and no disc is measured in the points there.
+#[test]
+fn a_hole_beside_a_crease() {
+    let flat = plate(|_, _| false);
+    for seed in 0..4 {
+        let outside = |x: f64, y: f64| if (x - 0.15).hypot(y) > 0.12 { 1.0 } else { 0.0 };
+        let points = sample(seed, POINTS, outside);
+        for (angle, smooth) in [(180.0, true), (90.0, false), (60.0, false)] {
+            let mesh = Mesh {
+                vertices: folded(&flat.vertices, angle),
+                ..flat.clone()
+            };
+            let (away, disc) = largest_disc(&mesh, &folded(&points, angle));
+            assert!(away > 0.12, "{seed}, {angle}: {away}");
+            assert_eq!(disc.is_some(), smooth, "{seed}, {angle}");
+            if let Some(disc) = disc {
+                let truly = 0.25 * POINTS as f64 * std::f64::consts::PI * disc.radius.powi(2);
+                let found = disc.expected.points / truly;
+                assert!((0.75..1.25).contains(&found), "{seed}: {found} of {truly}");
+            }
+        }
     }
 }
