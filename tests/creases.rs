@@ -1,6 +1,14 @@
 //! Creases and corners of meshes that the program makes.
 
+use crosscap::auto::{Auto, Input};
 use crosscap::prelude::*;
+use crosscap_algorithms::execute::Serial;
+use crosscap_algorithms::surfaces::Random;
+use crosscap_algorithms::tangents::TangentField;
+use crosscap_algorithms::tuning::TangentTuning;
+use crosscap_backends::euclidean::EuclideanOracle;
+use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
+use crosscap_core::squared_distance;
 
 /// The faces, creases and corners of a surface of the catalogue, reconstructed at given lengths.
 fn counted(name: &str, count: usize, [eps, dl]: [f64; 2]) -> [usize; 3] {
@@ -29,4 +37,95 @@ fn what_has_edges_is_told_by_them() {
 fn what_has_none_is_one_face() {
     assert_eq!(counted("sphere", 2000, [0.3, 0.25]), [1, 0, 0]);
     assert_eq!(counted("torus", 4000, [0.6, 0.4]), [1, 0, 0]);
+}
+
+/// Random points of a prism 1.5 long over a triangle with two legs of length 1 at an angle.
+fn prism(angle: f64, count: usize, seed: u64) -> PointCloud<f64> {
+    let (sine, cosine) = (0.5 * angle).to_radians().sin_cos();
+    let corner = [[0.0, 0.0], [-sine, -cosine], [sine, -cosine]];
+    let mut random = Random::stream(seed, 0);
+    let areas = [1.5, 1.5, 3.0 * sine, sine * cosine, sine * cosine];
+    let mut rows = Vec::new();
+    for _ in 0..count {
+        let mut face = random.between(0.0, areas.iter().sum());
+        let which = areas.iter().position(|area| {
+            face -= area;
+            face < 0.0
+        });
+        let which = which.unwrap_or(areas.len() - 1);
+        let [mut s, mut t] = [random.between(0.0, 1.0), random.between(0.0, 1.0)];
+        let height = 1.5 * t;
+        let mut along = |from: [f64; 2], to: [f64; 2]| {
+            rows.extend((0..2).map(|k| from[k] + s * (to[k] - from[k])));
+            rows.push(height);
+        };
+        match which {
+            0 => along(corner[0], corner[1]),
+            1 => along(corner[0], corner[2]),
+            2 => along(corner[1], corner[2]),
+            lid => {
+                if s + t > 1.0 {
+                    [s, t] = [1.0 - s, 1.0 - t];
+                }
+                rows.extend((0..2).map(|k| s * corner[1][k] + t * corner[2][k]));
+                rows.push(if lid == 3 { 0.0 } else { 1.5 });
+            }
+        }
+    }
+    PointCloud::new(3, rows).unwrap()
+}
+
+/// Two rectangles that meet in the second axis at 30 degrees: a path from one to the other is as long as on the rectangles unfolded, but for
+/// the points that are near both. In the graph of all near pairs there are shorter ways, through the air.
+#[test]
+fn paths_cross_a_crease_where_it_is() {
+    const COUNT: usize = 3000;
+    let spacing = (2.0 / COUNT as f64).sqrt();
+    let mut random = Random::stream(4, 0);
+    let flat: Vec<[f64; 2]> = (0..COUNT)
+        .map(|_| [random.between(-1.0, 1.0), random.between(0.0, 1.0)])
+        .collect();
+    let (sine, cosine) = 15_f64.to_radians().sin_cos();
+    let rows = (flat.iter()).flat_map(|p| [p[0] * sine, p[1], p[0].abs() * cosine]);
+    let cloud = PointCloud::new(3, rows.collect()).unwrap();
+    let oracle = EuclideanOracle::new(cloud.clone()).unwrap();
+    let rule = EdgeRule::Nearest(20);
+    let field = TangentField::new(&cloud, &oracle, &TangentTuning::MEASURED, &Serial).unwrap();
+    let joined = GeodesicMetric::joining(&oracle, rule, &|a, b| field.joins(a, b)).unwrap();
+    let plain = GeodesicMetric::new(&oracle, rule).unwrap();
+    assert!(joined.report().is_connected());
+    let (mut tried, mut shorter) = (0, 0);
+    for a in (0..COUNT).step_by(37) {
+        for b in (0..COUNT).step_by(41) {
+            let truly = squared_distance(&flat[a], &flat[b]).sqrt();
+            let apart = flat[a][0] * flat[b][0] < 0.0;
+            if apart && (6.0 * spacing..20.0 * spacing).contains(&truly) {
+                let found = joined.distance(a, b);
+                assert!(
+                    found > truly - 1.5 * spacing && found < 1.2 * truly,
+                    "{a} {b}: {found} of {truly}"
+                );
+                tried += 1;
+                shorter += usize::from(plain.distance(a, b) < truly - 1.5 * spacing);
+            }
+        }
+    }
+    assert!(tried > 100 && 2 * shorter > tried, "{shorter} of {tried}");
+}
+
+/// Creases of 60 degrees need no graph of sheets, those of 30 degrees do.
+#[test]
+fn sharp_prisms_need_no_parameters() {
+    for (angle, seed, sheets) in [(60.0, 0, false), (120.0, 2, true)] {
+        let points = prism(angle, 2000, seed);
+        let search = Auto::default()
+            .search(Input::Points(&points), &mut |asked| Pipeline::new(asked))
+            .unwrap();
+        let passed = search.attempts.iter().filter(|a| a.end.is_verified());
+        assert!(passed.clone().count() > 1, "{angle}");
+        for attempt in passed {
+            assert_eq!(attempt.end.topology().unwrap().betti, [1, 0, 1], "{angle}");
+            assert_eq!(attempt.parameters.spaces.sheets, sheets, "{angle}");
+        }
+    }
 }

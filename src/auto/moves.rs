@@ -68,7 +68,9 @@ impl Move {
             Self::Closed => {
                 "every point taken as one of a closed surface that does not cross itself, charts by distances along it"
             }
-            Self::Creased => "distances along the surface by paths that do not leave it at a crease",
+            Self::Creased => {
+                "distances along the surface by paths that do not leave it at a crease"
+            }
             Self::Ending => {
                 "every point taken as one of a surface that may end and does not cross itself, charts by distances along it"
             }

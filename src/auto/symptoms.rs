@@ -104,7 +104,9 @@ impl Symptom {
             Self::Sparse => &[Spaced, Larger, Local, Closed, Ending],
             Self::Unexplained => &[Spaced, Closed, Ending, Smaller, Local],
             Self::Curves => &[Spaced, Smaller, Closed, Ending, Local, Finer, Unfolded],
-            Self::Folds | Self::Open => &[Spaced, Creased, Smaller, Closed, Unfolded, Ending, Local, Finer],
+            Self::Folds | Self::Open => &[
+                Spaced, Creased, Smaller, Closed, Unfolded, Ending, Local, Finer,
+            ],
             Self::Coarse => &[Smaller, Ending, Finer, Spaced, Closed, Unfolded],
             Self::Ends => &[Ending, Spaced, Smaller, Closed, Unfolded],
             // A gap stays open where landmarks are nearer to each other than it is wide, if the mesh may end there.
