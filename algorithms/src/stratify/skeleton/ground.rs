@@ -23,6 +23,12 @@ impl<S: Scalar> Ground<'_, '_, S> {
         self.places.squared_distance(a.index(), b.index()).sqrt()
     }
 
+    /// The way from the place of one row to that of another.
+    pub(super) fn way(&self, from: Row, to: Row) -> Vec<f64> {
+        let [from, to] = [from, to].map(|row| self.places.point(row.index()));
+        from.iter().zip(to).map(|(a, b)| b - a).collect()
+    }
+
     /// Whether points lead from one place to another, on a curve without a surface: beside the straight way no stretch without
     /// them is too long for chance, next to the spacings of the curve about the other place, where so many ways are `tried`.
     /// O(k log k) for the k points as near to the first place as the other one.
@@ -56,15 +62,10 @@ impl<S: Scalar> Ground<'_, '_, S> {
 
     /// How far along the straight way between two places those of the given rows are that lie beside it.
     fn along<'r>(&'r self, from: Row, to: Row, rows: &'r [Row]) -> impl Iterator<Item = f64> + 'r {
-        let start = self.places.point(from.index());
-        let way_to = move |row: Row| -> Vec<f64> {
-            let place = self.places.point(row.index());
-            place.iter().zip(start).map(|(x, o)| x - o).collect()
-        };
-        let way = way_to(to);
+        let way = self.way(from, to);
         let (length, beside) = (self.distance(from, to), self.tuning.beside_way * self.dl);
         rows.iter().filter_map(move |&row| {
-            let own = way_to(row);
+            let own = self.way(from, row);
             let along = dot(&own, &way) / length;
             let off = (dot(&own, &own) - along * along).max(0.0).sqrt();
             (off <= beside).then_some(along)

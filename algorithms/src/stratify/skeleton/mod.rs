@@ -4,6 +4,8 @@
 //! a thinned set of them are the nodes of a graph, the graph falls into parts (one curve each), and along
 //! each part landmarks are laid at a separation that closes it well.
 
+#[cfg(test)]
+mod about_point;
 mod ends;
 mod graph;
 mod ground;
@@ -69,11 +71,7 @@ impl Skeleton {
             tuning: &analyzer.tuning.skeleton,
             dl,
         };
-        out.rows = thin(&ground, dl, StratumKind::Point).into();
-        out.corners = out.rows.len();
-        out.cells = Table::filled(out.corners, 0);
-        out.atlas.fit(&fitter, strata, out.rows.as_slice());
-        out.corner_fits = out.atlas.about_all(out.rows.as_slice());
+        out.lay_points(&ground);
         for kind in [StratumKind::Boundary, StratumKind::Curve] {
             out.lay_kind(&ground, kind);
         }
@@ -83,6 +81,16 @@ impl Skeleton {
         out.label(&ground);
         fitter.faults.none()?;
         Ok(out)
+    }
+
+    /// Takes the points that are 0-strata for landmarks, and makes the fits about them.
+    fn lay_points<S: Scalar>(&mut self, ground: &Ground<'_, '_, S>) {
+        self.rows = thin(ground, ground.dl, StratumKind::Point).into();
+        self.corners = self.rows.len();
+        self.cells = Table::filled(self.corners, 0);
+        let rows = self.rows.as_slice();
+        self.atlas.fit(ground.fitter, ground.strata, rows);
+        self.corner_fits = self.atlas.about_all(rows);
     }
 
     /// Makes the fits that label points: about every landmark, and along the curves between them.

@@ -54,11 +54,9 @@ impl CurveGraph {
                 let on_another = (self.nodes.branches[end.node])
                     .is_some_and(|(k, l)| k == at.branch.0 && l != at.branch.1);
                 let leads = || {
-                    let way = way(ground, row, rows[end.node]);
+                    let way = ground.way(row, rows[end.node]);
                     let out = side.as_ref().is_none_or(|side| dot(side, &way) > 0.0);
-                    let on = end
-                        .behind
-                        .map(|b| self::way(ground, rows[end.node], rows[b]));
+                    let on = end.behind.map(|b| ground.way(rows[end.node], rows[b]));
                     out && on.is_none_or(|on| dot(&on, &way) > 0.0)
                 };
                 if d <= reach && !on_another && !self.is_stub(ground, row, end.part) && leads() {
@@ -128,36 +126,21 @@ fn side<S: Scalar>(
     label: Label,
 ) -> Option<Vec<f64>> {
     let own = fit.labels().iter().filter(|x| x.1 == label);
-    own.map(|x| way(ground, corner, x.0))
+    own.map(|x| ground.way(corner, x.0))
         .reduce(|sum, way| sum.iter().zip(&way).map(|(a, b)| a + b).collect())
-}
-
-/// The way from the place of one row to that of another.
-fn way<S: Scalar>(ground: &Ground<'_, '_, S>, from: Row, to: Row) -> Vec<f64> {
-    let [from, to] = [from, to].map(|row| ground.places.point(row.index()));
-    from.iter().zip(to).map(|(a, b)| b - a).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dimension::PrincipalComponents;
-    use crate::execute::Serial;
-    use crate::metric::{BruteForceOracle, Euclidean};
-    use crate::space::Space;
-    use crate::stratify::analysis::{Analysis, Analyzer};
-    use crate::stratify::curve_ends::EndRegion;
-    use crate::stratify::site::{FitUsed, On};
-    use crate::stratify::strata::Strata;
+    use crate::stratify::skeleton::about_point::{AboutPoint, Found, Place};
     use crate::tuning::Tuning;
-    use crosscap_core::{Decomposition, Landmark, PointCloud, Stratum};
+    use crosscap_core::Landmark;
     use proptest::prelude::*;
     use std::f64::consts::FRAC_PI_2;
 
     /// How far the fit about the point labels, in dl.
     const REACH: f64 = 1.5;
-
-    type Place = [f64; 2];
 
     /// Places a tenth of dl apart on a ray from the origin.
     fn ray(turns: f64, stretches: &[[f64; 2]]) -> Vec<Place> {
@@ -172,58 +155,23 @@ mod tests {
     /// How many boundaries the chains join to the point at the origin, whose fit counts one boundary for each of the
     /// given lists of places and labels those that are near; `others` are places of boundaries that it knows nothing of.
     fn joined(boundaries: &[Vec<Place>], others: &[Place], dl: f64) -> usize {
-        let named = (boundaries.iter().enumerate()).flat_map(|(k, places)| {
-            let name = move |&place: &Place| (place, Label::new(1 + k));
-            places.iter().map(name)
-        });
-        let unnamed = others.iter().map(|&place| (place, Label::default()));
-        let origin = ([0.0, 0.0], Label::default());
-        let all: Vec<(Place, Label)> = [origin].into_iter().chain(named).chain(unnamed).collect();
-        let scaled = all.iter().flat_map(|x| x.0.map(|x| x * dl)).collect();
-        let cloud = PointCloud::new(2, scaled).unwrap();
         let is_near = |place: &Place| place[0].hypot(place[1]) < REACH;
-        let labels = (all.iter().enumerate())
-            .filter(|(k, (place, label))| *k == 0 || *label != Label::default() && is_near(place))
-            .map(|(k, &(_, label))| (Row::new(k), label));
-        let of = |dimension, count| std::iter::repeat_n(Stratum { dimension }, count);
+        let named = (boundaries.iter().enumerate()).flat_map(|(k, places)| {
+            places.iter().map(move |&place| Found {
+                place: place.map(|x| x * dl),
+                label: is_near(&place).then_some(Label::new(1 + k)),
+                cells: 1,
+            })
+        });
+        let unnamed = others.iter().map(|&place| Found {
+            place: place.map(|x| x * dl),
+            label: None,
+            cells: 1,
+        });
+        let found: Vec<Found> = named.chain(unnamed).collect();
         let count = boundaries.len();
-        let fit = Decomposition {
-            strata: of(0, 1).chain(of(1, count)).chain(of(2, 1)).collect(),
-            labels: Vec::new(),
-            cells_at_curve: vec![1; count],
-            residual: 0.0,
-            parameters: 0,
-            points: vec![vec![0.0, 0.0]],
-            center: vec![0.0, 0.0],
-            center_offset: 0.0,
-        };
-        let (labels, place) = ([labels.collect(), Vec::new()], vec![0.0, 0.0]);
-        let used = FitUsed {
-            model: 0,
-            radius: dl,
-        };
-        let mut strata = Strata::as_found(&Analysis::of_surface(all.len()), Some(&cloud));
-        for (k, row) in strata.rows().enumerate() {
-            let on = On {
-                kind: [StratumKind::Boundary, StratumKind::Point][usize::from(k == 0)],
-                place: None,
-                moved: 0.0,
-                fit: (k == 0).then_some(used),
-                cells: u8::from(k > 0),
-            };
-            strata.enter(&cloud, row, Some(on));
-        }
-        strata.add_region(EndRegion::new(labels, fit, place, REACH * dl, used));
-        let metric = Euclidean::new(cloud);
-        let oracle = BruteForceOracle::new(&metric);
-        let analyzer = Analyzer {
-            space: Space::new(&metric, &oracle),
-            estimator: &PrincipalComponents::new(0.05).unwrap(),
-            models: &[],
-            execute: &Serial,
-            tuning: &Tuning::MEASURED,
-        };
-        let skeleton = Skeleton::lay(&analyzer, &strata, dl).unwrap();
+        let about = AboutPoint::new(StratumKind::Boundary, &vec![1; count], &found, REACH * dl);
+        let skeleton = about.ask(|analyzer, strata| Skeleton::lay(analyzer, strata, dl).unwrap());
         let ends = skeleton.edges().iter().flat_map(|e| e.landmarks());
         ends.filter(|&end| end == Landmark::new(0)).count()
     }
