@@ -6,7 +6,7 @@ mod tests;
 use super::inputs::{cloud, ranks};
 use super::trial::{Outcome, ensure};
 use super::{Failures, Findings, Law, LawBroken, Settings};
-use crate::{Chart, Error, LocalChart, PointCloud};
+use crate::{Chart, LocalChart, PointCloud};
 use proptest::collection::vec;
 use proptest::prelude::*;
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::Error;
 use crate::laws::twins::{each_is_caught, quick};
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,6 +1,5 @@
 //! A model under test: the cases it is put, and what it makes of them.
 
-use super::Instances;
 use super::answers::{Answer, same, well_formed};
 use crate::laws::instances::{Draw, Instance};
 use crate::laws::motion::{Motion, motions};
@@ -8,6 +7,32 @@ use crate::laws::trial::{Outcome, ensure};
 use crate::{Decomposition, SingularityModel};
 use proptest::collection::vec;
 use proptest::prelude::*;
+use std::ops::RangeInclusive;
+
+/// Exact instances of what a model describes, given by its author.
+pub struct Instances<'a> {
+    /// Draws one; all its randomness from [`Draw`], about [`Draw::points`] points.
+    pub draw: &'a dyn Fn(&mut Draw) -> Instance,
+    /// How many points instances have.
+    pub points: RangeInclusive<usize>,
+    /// Largest residual on exact data, as a share of the radius.
+    pub exact: f64,
+    /// Least noise that must show in the residual, as a share of the radius; twice and four times as
+    /// much is tried as well.
+    pub noise: f64,
+}
+
+impl<'a> Instances<'a> {
+    /// Instances of 100 to 300 points, exact to a millionth, with noise of half a percent and more.
+    pub fn new(draw: &'a dyn Fn(&mut Draw) -> Instance) -> Self {
+        Self {
+            draw,
+            points: 100..=300,
+            exact: 1e-6,
+            noise: 0.005,
+        }
+    }
+}
 
 /// Which instance, and what is done with it.
 #[derive(Clone, Debug)]

@@ -5,7 +5,6 @@ mod asked;
 #[cfg(test)]
 mod tests;
 
-use super::instances::{Draw, Instance};
 use super::trial::ensure;
 use super::{Failures, Findings, Law, LawBroken, Settings};
 use crate::SingularityModel;
@@ -13,7 +12,8 @@ use answers::{about, cells_are_counted, is_true, same};
 use asked::{Asked, Case};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use std::ops::RangeInclusive;
+
+pub use asked::Instances;
 
 const SUBJECT: &str = "SingularityModel";
 
@@ -114,31 +114,6 @@ static TRUTH: Law = Law {
 pub(super) static ALL: [&Law; 9] = [
     &PARTITION, &MOTION, &ORDER, &FITTED, &ABOUT, &EXACT, &NOISE, &CELLS, &TRUTH,
 ];
-
-/// Exact instances of what a model describes, given by its author.
-pub struct Instances<'a> {
-    /// Draws one; all its randomness from [`Draw`], about [`Draw::points`] points.
-    pub draw: &'a dyn Fn(&mut Draw) -> Instance,
-    /// How many points instances have.
-    pub points: RangeInclusive<usize>,
-    /// Largest residual on exact data, as a share of the radius.
-    pub exact: f64,
-    /// Least noise that must show in the residual, as a share of the radius; twice and four times as
-    /// much is tried as well.
-    pub noise: f64,
-}
-
-impl<'a> Instances<'a> {
-    /// Instances of 100 to 300 points, exact to a millionth, with noise of half a percent and more.
-    pub fn new(draw: &'a dyn Fn(&mut Draw) -> Instance) -> Self {
-        Self {
-            draw,
-            points: 100..=300,
-            exact: 1e-6,
-            noise: 0.005,
-        }
-    }
-}
 
 /// Puts a model through its laws: on exact and noisy instances given by its author, and on poor data
 /// (few points, copies, lattices) where it must not stumble.
