@@ -12,9 +12,9 @@ use nalgebra::{DMatrix, SymmetricEigen};
 ///
 /// After a first fit the share `trim` of the points with the largest distances off the leading two
 /// axes is left out; the dimension is read from the rest as usual, with tolerance `dt`.
-struct TrimmedComponents {
-    dt: f64,
-    trim: f64,
+pub struct TrimmedComponents {
+    pub dt: f64,
+    pub trim: f64,
 }
 
 /// Mean, axes (columns) and variances, largest first.

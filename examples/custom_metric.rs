@@ -13,9 +13,9 @@ use crosscap_core::{
 };
 
 /// Points of a cube whose opposite faces are one: what leaves it on one side comes back on the other.
-struct PeriodicBox {
-    cloud: PointCloud<f64>,
-    side: f64,
+pub struct PeriodicBox {
+    pub cloud: PointCloud<f64>,
+    pub side: f64,
 }
 
 impl MetricSpace for PeriodicBox {

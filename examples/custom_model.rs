@@ -7,11 +7,11 @@ use crosscap_core::{Decomposition, Label, LocalPoints, Rejection, SingularityMod
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Two planes, each fitted to the points nearer to it, until nobody changes sides; from several starts.
-struct AlternatingPlanes {
+pub struct AlternatingPlanes {
     /// Root mean squared distance up to which the fit is believed, unit of the data.
-    dp: f64,
+    pub dp: f64,
     /// A point closer than this to both planes is on the curve, unit of the data.
-    ep: f64,
+    pub ep: f64,
 }
 
 #[derive(Clone, Copy)]

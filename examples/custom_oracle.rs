@@ -8,7 +8,7 @@ use crosscap_core::laws::{self, Settings, StraightLine};
 use crosscap_core::{Neighbor, NeighborhoodOracle, PointCloud};
 
 /// A projection never lengthens a distance, so who is far along one axis is far.
-struct SortedAxis {
+pub struct SortedAxis {
     cloud: PointCloud<f64>,
     /// Points by their first coordinate.
     order: Vec<usize>,
@@ -20,7 +20,7 @@ struct SortedAxis {
 const ROUNDING: f64 = 1e-9;
 
 impl SortedAxis {
-    fn new(cloud: PointCloud<f64>) -> Self {
+    pub fn new(cloud: PointCloud<f64>) -> Self {
         let mut order: Vec<usize> = (0..cloud.len()).collect();
         order.sort_by(|&a, &b| cloud.point(a)[0].total_cmp(&cloud.point(b)[0]));
         let mut rank = vec![0; order.len()];

@@ -1,5 +1,19 @@
-//! Spaces that are no Euclidean ones, and plug-ins that do what the default does.
+//! Spaces that are no Euclidean ones, plug-ins that do what the default does, and those that the guide prints.
 
+#[path = "../examples/custom_estimator.rs"]
+#[allow(dead_code)]
+mod custom_estimator;
+#[path = "../examples/custom_metric.rs"]
+#[allow(dead_code)]
+mod custom_metric;
+#[path = "../examples/custom_model.rs"]
+#[allow(dead_code)]
+mod custom_model;
+#[path = "../examples/custom_oracle.rs"]
+#[allow(dead_code)]
+mod custom_oracle;
+
+use crosscap::comparison::{Comparison, Contender, compare};
 use crosscap::prelude::*;
 use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::dimension::PrincipalComponents;
@@ -12,10 +26,15 @@ use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
 use crosscap_algorithms::tuning::FrontTuning;
 use crosscap_backends::files::Distances;
 use crosscap_core::execute::Execute;
+use crosscap_core::laws::{self, Instances, Settings, StraightLine, instances};
 use crosscap_core::{
     BallDimension, Balls, Decomposition, DimensionEstimate, LocalPoints, Neighborhood, Rejection,
     StratifiedLandmarks, Triangulation, Triangulator,
 };
+use custom_estimator::TrimmedComponents;
+use custom_metric::PeriodicBox;
+use custom_model::AlternatingPlanes;
+use custom_oracle::SortedAxis;
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -310,4 +329,78 @@ fn the_report_names_what_ran() {
     let three = [&names.metric, &names.stratifier, &names.triangulator];
     assert_eq!(three, ["euclidean", "cells", "advancing-front"]);
     assert_eq!(names.estimator.as_deref(), Some("pca"));
+}
+
+/// An estimator that leaves no point out, and a model with the tolerances of [`parameters`].
+fn of_the_guide() -> (TrimmedComponents, AlternatingPlanes) {
+    let Parameters { dt, dp, ep, .. } = parameters();
+    (
+        TrimmedComponents { dt, trim: 0.0 },
+        AlternatingPlanes { dp, ep },
+    )
+}
+
+/// Metric, oracle, estimator and model as the guide prints them.
+#[test]
+fn plug_ins_of_the_guide_pass_the_kit() {
+    let settings = Settings {
+        cases: 16,
+        ..Settings::default()
+    };
+    let side = 2.5;
+    laws::metric(&settings, |cloud| {
+        let cloud = cloud.clone();
+        PeriodicBox { cloud, side }
+    })
+    .unwrap();
+    laws::oracle(&settings, |cloud| {
+        (StraightLine(cloud.clone()), SortedAxis::new(cloud.clone()))
+    })
+    .unwrap();
+    let (estimator, model) = of_the_guide();
+    laws::estimator(&settings, &estimator).unwrap();
+    laws::model(&settings, &model, &Instances::new(&instances::two_planes)).unwrap();
+}
+
+#[test]
+fn plug_ins_of_the_guide_run_are_compared_and_are_named() {
+    let cloud = two_spheres();
+    let mine = |cloud: &PointCloud<f64>, parameters: Parameters| {
+        let (estimator, model) = of_the_guide();
+        Ok(Pipeline::new(parameters)?
+            .oracle(Box::new(SortedAxis::new(cloud.clone())))
+            .estimator(Box::new(estimator))
+            .models(vec![Box::new(model)]))
+    };
+    let outcome = mine(&cloud, parameters())
+        .unwrap()
+        .reconstruct(&cloud)
+        .unwrap();
+    assert!(outcome.is_verified());
+    assert_eq!(outcome.homology.betti_rational, [1, 0, 3]);
+    let report = &outcome.report;
+    assert_eq!(report.plugins.estimator.as_deref(), Some("trimmed-pca"));
+    let [model] = &report.models[..] else {
+        panic!("{:?}", report.models);
+    };
+    assert_eq!(model.name, "alternating-planes");
+    assert!(model.won > 0, "{model:?}");
+    // The spheres are far from the faces of the box.
+    let contenders = [
+        Contender::metric("box", |cloud| {
+            let cloud = cloud.clone();
+            Ok(PeriodicBox { cloud, side: 50.0 })
+        }),
+        Contender::pipeline("mine", mine),
+    ];
+    let comparison = Comparison {
+        analysis_eps: Some(parameters().eps),
+        betti: Some([1, 0, 3]),
+        ..Comparison::new([0.9])
+    };
+    let runs = compare(&cloud, &parameters(), &contenders, &comparison, &|| ()).unwrap();
+    for (run, name) in runs.iter().zip(["box", "mine"]) {
+        assert_eq!(run.metric, name);
+        assert!(run.works(), "{run:?}");
+    }
 }

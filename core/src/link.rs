@@ -73,11 +73,12 @@ impl Link {
         let known = arcs.iter().flatten().all(|&end| end < nodes);
         let few = usize::from(nodes.max(circles)).max(arcs.len()) <= Self::MOST;
         (known && few).then(|| {
-            canonical::of(&Self {
+            Self {
                 nodes,
                 arcs: arcs.to_vec(),
                 circles,
-            })
+            }
+            .canonical()
         })
     }
 
@@ -87,7 +88,7 @@ impl Link {
     ///
     /// O(p + e) for p points and e edges, and at most 8! steps to bring it into its canonical form.
     pub fn of_graph(count: usize, edges: &[[u32; 2]], marked: impl Fn(usize) -> bool) -> Self {
-        canonical::of(&smoothed(count, edges, marked))
+        smoothed(count, edges, marked).canonical()
     }
 
     /// A circle: an interior point of a surface.
@@ -137,12 +138,13 @@ impl Link {
         let edges: Vec<[u32; 2]> = self.arcs.iter().map(|arc| arc.map(u32::from)).collect();
         let mut link = smoothed(self.nodes(), &edges, |_| false);
         link.circles = link.circles.saturating_add(self.circles);
-        canonical::of(&link)
+        link.canonical()
     }
 
-    /// What kind of point has this link, creases taken for smooth sheets.
-    pub fn kind(&self) -> LinkKind {
-        LinkKind::of(self)
+    /// The same for all links that are the same but for the names of their nodes.
+    fn canonical(self) -> Self {
+        let arcs = canonical::arcs(self.nodes, &self.arcs, Self::MOST_NODES);
+        Self { arcs, ..self }
     }
 
     /// The nodes of each connected part that has any.

@@ -86,7 +86,7 @@ impl Names {
         }
     }
 
-    /// Paths in the text of an item that begin at the root or with a module above.
+    /// Paths in the text of an item that begin at the root, with a module above or with one inside.
     fn scan(&mut self, item: &Item, at: &Path) {
         let text = prettyplease::unparse(&syn::File {
             shebang: None,
@@ -105,8 +105,9 @@ impl Names {
             let words = line.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':'));
             for word in words {
                 let path: Path = word.split("::").map(String::from).collect();
-                let begins = matches!(path[0].as_str(), "crate" | "super") && path.len() > 1;
-                if let Some(path) = self.absolute(&path, at).filter(|_| begins) {
+                if path.len() > 1
+                    && let Some(path) = self.absolute(&path, at)
+                {
                     self.name(at, path);
                 }
             }

@@ -81,6 +81,10 @@ fn a_circle_is_found_through_what_is_handed_on() {
         assert_eq!(found.len(), 1, "{inner}: {found:?}");
         assert!(found[0].contains("one") && found[0].contains("two"));
     }
+    // A module that calls into one inside it, which asks for what stands outside.
+    let inside = "mod outer { mod inner { use super::Own; pub fn ask(_: Own) {} } pub struct Own; fn call() { inner::ask(Own) } }";
+    let found = circles(&Module::parse(inside, Path::new("lib.rs")));
+    assert_eq!(found.len(), 1, "{found:?}");
 }
 
 #[test]

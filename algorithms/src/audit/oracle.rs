@@ -25,66 +25,98 @@ pub(crate) fn oracle<S: Scalar>(
             expected: format!("{count}, as many as the oracle has"),
         });
     }
-    let plugin = oracle.name();
     let (mut near, mut nearest) = (Vec::new(), Vec::new());
     for center in spread(count, SAMPLES) {
         oracle.within(center, S::of(eps), &mut near);
-        listed(plugin, center, &near, metric)?;
-        if let Some(x) = near.iter().find(|x| x.distance >= S::of(eps)) {
-            let detail = format!(
-                "point {} at distance {}, radius {eps}",
-                x.index,
-                x.distance.as_f64()
-            );
-            return broken(
-                plugin,
-                "strictness: within takes points at distance < radius",
-                center,
-                detail,
-            );
-        }
-        if !near.iter().any(|x| x.index == center) {
-            let detail = format!("{} points, not the center", near.len());
-            return broken(
-                plugin,
-                "strictness: the center is among the points within",
-                center,
-                detail,
-            );
-        }
+        within_is_strict(oracle.name(), metric, center, eps, &near)?;
         oracle.nearest(center, NEIGHBORS, &mut nearest);
-        listed(plugin, center, &nearest, metric)?;
-        if nearest.len() != NEIGHBORS.min(count) {
-            let detail = format!("{} points of the {NEIGHBORS} nearest", nearest.len());
-            return broken(plugin, "equals brute force", center, detail);
-        }
-        // All that is nearer than the last of them must be among them, in the same order.
-        let last = nearest.last().map_or(S::zero(), |x| x.distance);
-        let before = nearest.partition_point(|x| x.distance < last);
-        oracle.within(center, last, &mut near);
-        let same = |a: &[Neighbor<S>], b: &[Neighbor<S>]| {
-            a.iter().map(|x| x.index).eq(b.iter().map(|x| x.index))
-        };
-        if last > S::zero() && !same(&near, &nearest[..before]) {
+        nearest_are_within(oracle, metric, center, &nearest, &mut near)?;
+        distances_are_those_of(metric, oracle.name(), center, &nearest)?;
+    }
+    Ok(())
+}
+
+/// Whether `near` can be the points closer to `center` than `eps`.
+fn within_is_strict<S: Scalar>(
+    plugin: &str,
+    metric: &dyn MetricSpace<Scalar = S>,
+    center: usize,
+    eps: f64,
+    near: &[Neighbor<S>],
+) -> Result<(), Error> {
+    listed(plugin, center, near, metric)?;
+    if let Some(x) = near.iter().find(|x| x.distance >= S::of(eps)) {
+        let detail = format!(
+            "point {} at distance {}, radius {eps}",
+            x.index,
+            x.distance.as_f64()
+        );
+        return broken(
+            plugin,
+            "strictness: within takes points at distance < radius",
+            center,
+            detail,
+        );
+    }
+    if !near.iter().any(|x| x.index == center) {
+        let detail = format!("{} points, not the center", near.len());
+        return broken(
+            plugin,
+            "strictness: the center is among the points within",
+            center,
+            detail,
+        );
+    }
+    Ok(())
+}
+
+/// Whether `nearest` are as many as were asked for, and all that is nearer than the last of them is among them, in the same order.
+fn nearest_are_within<S: Scalar>(
+    oracle: &dyn NeighborhoodOracle<Scalar = S>,
+    metric: &dyn MetricSpace<Scalar = S>,
+    center: usize,
+    nearest: &[Neighbor<S>],
+    near: &mut Vec<Neighbor<S>>,
+) -> Result<(), Error> {
+    let plugin = oracle.name();
+    listed(plugin, center, nearest, metric)?;
+    if nearest.len() != NEIGHBORS.min(oracle.len()) {
+        let detail = format!("{} points of the {NEIGHBORS} nearest", nearest.len());
+        return broken(plugin, "equals brute force", center, detail);
+    }
+    let last = nearest.last().map_or(S::zero(), |x| x.distance);
+    let before = nearest.partition_point(|x| x.distance < last);
+    oracle.within(center, last, near);
+    let names = |all: &[Neighbor<S>]| all.iter().map(|x| x.index).collect::<Vec<_>>();
+    if last > S::zero() && names(near) != names(&nearest[..before]) {
+        let detail = format!(
+            "{} points within {}, {before} by the query for the nearest",
+            near.len(),
+            last.as_f64()
+        );
+        return broken(plugin, "equals brute force", center, detail);
+    }
+    Ok(())
+}
+
+/// Whether two of the distances that an oracle tells, that of the second and that of the last point, are the metric's.
+fn distances_are_those_of<S: Scalar>(
+    metric: &dyn MetricSpace<Scalar = S>,
+    plugin: &str,
+    center: usize,
+    nearest: &[Neighbor<S>],
+) -> Result<(), Error> {
+    for x in [nearest.get(1), nearest.last()].into_iter().flatten() {
+        let told = x.distance.as_f64();
+        let true_one = distance(metric, center, x.index)?.as_f64();
+        // Infinite ones are equal, and their difference is no number.
+        if told != true_one && (told - true_one).abs() > slack::<S>() * told.max(true_one) {
             let detail = format!(
-                "{} points within {}, {before} by the query for the nearest",
-                near.len(),
-                last.as_f64()
+                "distance {told} to point {}, {true_one} by the metric {}",
+                x.index,
+                metric.name()
             );
             return broken(plugin, "equals brute force", center, detail);
-        }
-        for x in [nearest.get(1), nearest.last()].into_iter().flatten() {
-            let told = x.distance.as_f64();
-            let true_one = distance(metric, center, x.index)?.as_f64();
-            // Infinite ones are equal, and their difference is no number.
-            if told != true_one && (told - true_one).abs() > slack::<S>() * told.max(true_one) {
-                let detail = format!(
-                    "distance {told} to point {}, {true_one} by the metric {}",
-                    x.index,
-                    metric.name()
-                );
-                return broken(plugin, "equals brute force", center, detail);
-            }
         }
     }
     Ok(())

@@ -37,19 +37,7 @@ pub(crate) fn selection<S: Scalar>(
         taken,
         separation,
     } = *question;
-    let mut free = vec![false; oracle.len()];
-    candidates.iter().for_each(|&i| free[i] = true);
-    let mut landmark = vec![false; oracle.len()];
-    for &i in chosen {
-        let law = "landmarks are different candidates";
-        if free.get(i) != Some(&true) {
-            return broken(plugin, law, i, format!("point {i} is no candidate"));
-        }
-        if landmark[i] {
-            return broken(plugin, law, i, format!("point {i} is chosen twice"));
-        }
-        landmark[i] = true;
-    }
+    let mut landmark = chosen_once(oracle.len(), plugin, candidates, chosen)?;
     taken.iter().for_each(|&i| landmark[i] = true);
     // Taken points may be closer to each other: they are others' choice.
     let rounding = separation * slack::<S>();
@@ -80,11 +68,8 @@ pub(crate) fn selection<S: Scalar>(
             near.iter().find(close).copied()
         },
     );
-    let first = all
-        .iter()
-        .zip(close)
-        .find_map(|(&i, close)| Some((i, close?)));
-    if let Some((i, other)) = first {
+    let mut close = all.iter().zip(close);
+    if let Some((i, other)) = close.find_map(|(&i, close)| Some((i, close?))) {
         let detail = format!(
             "landmark {} at distance {}, separation {separation}",
             other.index,
@@ -103,4 +88,27 @@ pub(crate) fn selection<S: Scalar>(
             format!("no landmark within {separation}"),
         ),
     }
+}
+
+/// Which of so many points are chosen, each a candidate and once.
+fn chosen_once(
+    count: usize,
+    plugin: &str,
+    candidates: &[usize],
+    chosen: &[usize],
+) -> Result<Vec<bool>, Error> {
+    let mut free = vec![false; count];
+    candidates.iter().for_each(|&i| free[i] = true);
+    let mut landmark = vec![false; count];
+    for &i in chosen {
+        let law = "landmarks are different candidates";
+        if free.get(i) != Some(&true) {
+            broken(plugin, law, i, format!("point {i} is no candidate"))?;
+        }
+        if landmark[i] {
+            broken(plugin, law, i, format!("point {i} is chosen twice"))?;
+        }
+        landmark[i] = true;
+    }
+    Ok(landmark)
 }

@@ -78,103 +78,132 @@ fn check<S: Scalar>(
     oracle: &dyn NeighborhoodOracle<Scalar = S>,
     options: &CertificateOptions<'_>,
 ) -> DistanceReport {
-    let limits = &options.limits;
     let length = |a: u32, b: u32| metric.distance(rows[a as usize], rows[b as usize]).as_f64();
-    let triangles = &mesh.complex.triangles;
     let mut report = DistanceReport {
         smallest_dihedral: 180.0,
         smallest_angle: 180.0,
         unused_landmarks: options.unused_landmarks.len(),
         ..DistanceReport::default()
     };
-    let mut folds = Vec::new();
-    let mut lengths = Vec::with_capacity(incidence.edges.len());
-    let mut at_one_place = Vec::new();
-    for (e, &[a, b]) in incidence.edges.iter().enumerate() {
-        let base = length(a, b);
-        lengths.push(base);
-        if !within(0.0, base) || base == 0.0 {
-            at_one_place.push(Place::Vertices([a, b]));
-        }
-        let &[s, t] = incidence.at_edge(e) else {
-            continue;
-        };
-        let tip = |t: u32| {
-            triangles[t as usize]
-                .into_iter()
-                .find(|&v| v != a && v != b)
-        };
-        let (Some(c), Some(d)) = (tip(s), tip(t)) else {
-            continue;
-        };
-        let angle = dihedral(
-            base,
-            [length(a, c), length(b, c)],
-            [length(a, d), length(b, d)],
-            length(c, d),
-        );
-        report.smallest_dihedral = report.smallest_dihedral.min(angle);
-        if !within(limits.fold, angle) {
-            folds.push(Place::Edge([a, b]));
-        }
-    }
-    report.folds = folds.len();
-    let mut needles = Vec::new();
-    for (t, &[a, b, c]) in triangles.iter().enumerate() {
-        let angle = smallest_angle([length(b, c), length(a, c), length(a, b)]);
-        report.smallest_angle = report.smallest_angle.min(angle);
-        if !within(limits.min_angle, angle) {
-            needles.push(Place::Triangle(t as u32));
-        }
-    }
+    report.look_at_landmarks(mesh, options);
+    let lengths = (incidence.edges.iter()).map(|&[a, b]| length(a, b));
+    let lengths: Vec<f64> = lengths.collect();
+    report.look_at_edges(mesh, incidence, &lengths, &length, options);
+    report.look_at_angles(mesh, &length, options);
     let separation = options
         .landmark_separation
         .unwrap_or_else(|| 0.75 * super::statistics::median(lengths));
-    let mut nearest = vec![f64::INFINITY; metric.len()];
-    let mut near = Vec::new();
-    for &row in rows {
-        oracle.within(row, S::of(2.0 * separation), &mut near);
-        for x in &near {
-            nearest[x.index] = nearest[x.index].min(x.distance.as_f64());
+    report.look_at_points(rows, oracle, separation);
+    report
+}
+
+/// Length of an edge between two vertices.
+type Length<'l> = dyn Fn(u32, u32) -> f64 + 'l;
+
+/// The points have no coordinates.
+fn nowhere(_: Place) -> Vec<f64> {
+    Vec::new()
+}
+
+impl DistanceReport {
+    /// Landmarks that are not in the mesh.
+    fn look_at_landmarks(&mut self, mesh: &Mesh, options: &CertificateOptions<'_>) {
+        let vertices = mesh.complex.vertices as f64;
+        let allowed = (options.limits.unused_landmarks * vertices).floor();
+        if self.unused_landmarks as f64 > allowed {
+            let places = options.unused_landmarks.iter().map(|&r| Place::Point(r));
+            let kind = ViolationKind::UnusedLandmarks;
+            (self.violations).extend(Violation::at(kind, places.collect(), nowhere));
         }
     }
-    let limit = POINTS_TO_VERTICES * separation;
-    let far: Vec<Place> = (0..nearest.len())
-        .filter(|&p| !within(nearest[p], limit))
-        .map(Place::Point)
-        .collect();
-    // What is beyond every query is at least that far.
-    let in_separations = |d: &f64| d.min(2.0 * separation) / separation;
-    report.points_to_vertices = Distances::of(nearest.iter().map(in_separations).collect());
 
-    let nowhere = |_: Place| Vec::new();
-    let allowed = (limits.unused_landmarks * mesh.complex.vertices as f64).floor();
-    if report.unused_landmarks as f64 > allowed {
-        let places = options.unused_landmarks.iter().map(|&r| Place::Point(r));
-        report.violations.extend(Violation::at(
-            ViolationKind::UnusedLandmarks,
-            places.collect(),
-            nowhere,
-        ));
+    /// Vertices at one place, and triangles that are folded onto each other.
+    fn look_at_edges(
+        &mut self,
+        mesh: &Mesh,
+        incidence: &Incidence,
+        lengths: &[f64],
+        length: &Length<'_>,
+        options: &CertificateOptions<'_>,
+    ) {
+        let mut folds = Vec::new();
+        let mut at_one_place = Vec::new();
+        for (e, (&[a, b], &base)) in incidence.edges.iter().zip(lengths).enumerate() {
+            if !within(0.0, base) || base == 0.0 {
+                at_one_place.push(Place::Vertices([a, b]));
+            }
+            let &[s, t] = incidence.at_edge(e) else {
+                continue;
+            };
+            let tip = |t: u32| {
+                let mut corners = mesh.complex.triangles[t as usize].into_iter();
+                corners.find(|&v| v != a && v != b)
+            };
+            let (Some(c), Some(d)) = (tip(s), tip(t)) else {
+                continue;
+            };
+            let sides = [c, d].map(|tip| [length(a, tip), length(b, tip)]);
+            let angle = dihedral(base, sides[0], sides[1], length(c, d));
+            self.smallest_dihedral = self.smallest_dihedral.min(angle);
+            if !within(options.limits.fold, angle) {
+                folds.push(Place::Edge([a, b]));
+            }
+        }
+        self.folds = folds.len();
+        let kind = ViolationKind::CoincidentVertices;
+        (self.violations).extend(Violation::at(kind, at_one_place, nowhere));
+        let (worst, limit) = (self.smallest_dihedral, options.limits.fold);
+        let fold = Violation::at(ViolationKind::Fold, folds, nowhere);
+        (self.violations).extend(fold.map(|v| v.measured(worst, limit)));
     }
-    report.violations.extend(Violation::at(
-        ViolationKind::CoincidentVertices,
-        at_one_place,
-        nowhere,
-    ));
-    report.violations.extend(
-        Violation::at(ViolationKind::Fold, folds, nowhere)
-            .map(|v| v.measured(report.smallest_dihedral, limits.fold)),
-    );
-    report.violations.extend(
-        Violation::at(ViolationKind::NeedleTriangle, needles, nowhere)
-            .map(|v| v.measured(report.smallest_angle, limits.min_angle)),
-    );
-    report.violations.extend(
-        Violation::at(ViolationKind::UncoveredPoints, far, nowhere)
-            .map(|v| v.measured(report.points_to_vertices.max, POINTS_TO_VERTICES)),
-    );
-    report
+
+    /// Triangles that are needles.
+    fn look_at_angles(
+        &mut self,
+        mesh: &Mesh,
+        length: &Length<'_>,
+        options: &CertificateOptions<'_>,
+    ) {
+        let mut needles = Vec::new();
+        for (t, &[a, b, c]) in mesh.complex.triangles.iter().enumerate() {
+            let angle = smallest_angle([length(b, c), length(a, c), length(a, b)]);
+            self.smallest_angle = self.smallest_angle.min(angle);
+            if !within(options.limits.min_angle, angle) {
+                needles.push(Place::Triangle(t as u32));
+            }
+        }
+        let (worst, limit) = (self.smallest_angle, options.limits.min_angle);
+        let needle = Violation::at(ViolationKind::NeedleTriangle, needles, nowhere);
+        (self.violations).extend(needle.map(|v| v.measured(worst, limit)));
+    }
+
+    /// Points that no vertex is near to.
+    fn look_at_points<S: Scalar>(
+        &mut self,
+        rows: &[usize],
+        oracle: &dyn NeighborhoodOracle<Scalar = S>,
+        separation: f64,
+    ) {
+        let mut nearest = vec![f64::INFINITY; oracle.len()];
+        let mut near = Vec::new();
+        for &row in rows {
+            oracle.within(row, S::of(2.0 * separation), &mut near);
+            for x in &near {
+                nearest[x.index] = nearest[x.index].min(x.distance.as_f64());
+            }
+        }
+        let limit = POINTS_TO_VERTICES * separation;
+        let far: Vec<Place> = (0..nearest.len())
+            .filter(|&p| !within(nearest[p], limit))
+            .map(Place::Point)
+            .collect();
+        // What is beyond every query is at least that far.
+        let in_separations = |d: &f64| d.min(2.0 * separation) / separation;
+        self.points_to_vertices = Distances::of(nearest.iter().map(in_separations).collect());
+        let worst = self.points_to_vertices.max;
+        let uncovered = Violation::at(ViolationKind::UncoveredPoints, far, nowhere);
+        (self.violations).extend(uncovered.map(|v| v.measured(worst, POINTS_TO_VERTICES)));
+    }
 }
 
 /// Angle between two triangles over a common base, degrees, from the sides of each and the distance

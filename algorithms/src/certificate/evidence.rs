@@ -5,7 +5,7 @@
 
 use super::faithful::opening::places_amid;
 use super::incidence::Incidence;
-use super::{CertificateOptions, Limits, cover, edges};
+use super::{CertificateOptions, Limits, cover, edges, mesh_places};
 use crosscap_core::Mesh;
 use std::cell::RefCell;
 
@@ -21,7 +21,7 @@ pub fn evidence_rows(points: usize, limits: &Limits) -> Vec<usize> {
 pub fn evidence_places(mesh: &Mesh, separation: f64, options: &CertificateOptions<'_>) -> Vec<f64> {
     let incidence = Incidence::new(&mesh.complex);
     let bare = incidence.bare_edges();
-    let all = RefCell::new(cover::places(mesh, &bare, separation));
+    let all = RefCell::new(mesh_places::places(mesh, &bare, separation));
     let shortest = options.limits.shortest_boundary;
     edges::check(mesh, &incidence, options.closed, shortest, &|part| {
         places_amid(mesh, part).for_each(|place| all.borrow_mut().extend(place));

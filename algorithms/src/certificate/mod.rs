@@ -38,6 +38,8 @@ mod kinds;
 mod levels;
 mod limits;
 mod links;
+mod mesh_cover;
+mod mesh_places;
 mod near_pairs;
 mod options;
 mod pinched;

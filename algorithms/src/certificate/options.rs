@@ -67,8 +67,17 @@ impl Default for CertificateOptions<'_> {
 }
 
 impl CertificateOptions<'_> {
+    /// The landmark separation at an input point, where it is `separation` in the middle.
+    pub(super) fn separation_at(&self, row: usize, separation: f64) -> f64 {
+        separation * self.separation_scale.map_or(1.0, |scale| scale[row])
+    }
+
     /// What is wrong with the options, if anything.
     pub(super) fn fault(&self, mesh: &Mesh) -> Option<Violation> {
+        (self.fault_of_numbers()).or_else(|| self.fault_of_points(mesh))
+    }
+
+    fn fault_of_numbers(&self) -> Option<Violation> {
         let l = &self.limits;
         let named = [
             ("fold", l.fold),
@@ -104,6 +113,10 @@ impl CertificateOptions<'_> {
                 format!("the landmark separation is {dl}, expected a finite number above 0"),
             ));
         }
+        None
+    }
+
+    fn fault_of_points(&self, mesh: &Mesh) -> Option<Violation> {
         if let Some(points) = self
             .points
             .filter(|p| p.dimension() != mesh.vertices.dimension())

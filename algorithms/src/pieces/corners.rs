@@ -7,7 +7,7 @@ use std::fmt;
 
 /// A vertex at which the boundary of a surface has a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct BoundaryCorner {
+pub struct CornerVertex {
     /// The vertex.
     pub vertex: u32,
     /// Angle of the surface there, in degrees: 90 at a corner of a square, 270 at a corner that goes inward.
@@ -17,7 +17,7 @@ pub struct BoundaryCorner {
 /// The corners of the boundary of a mesh. `Display` says how many there are.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(transparent)]
-pub struct BoundaryCorners(Vec<BoundaryCorner>);
+pub struct BoundaryCorners(Vec<CornerVertex>);
 
 impl BoundaryCorners {
     /// Those of the special points of a mesh whose link is an arc, with their angles. O(t) for each of them, of t triangles.
@@ -25,7 +25,7 @@ impl BoundaryCorners {
         let arcs = special.iter().filter(|p| p.link.kind() == LinkKind::Arc);
         let vertices = arcs.map(|p| p.vertex);
         let inside = vertices.filter(|&v| (v as usize) < mesh.complex.vertices);
-        let corner = |vertex| BoundaryCorner {
+        let corner = |vertex| CornerVertex {
             vertex,
             angle: angle_at(mesh, vertex),
         };
@@ -33,7 +33,7 @@ impl BoundaryCorners {
     }
 
     /// All of them.
-    pub fn all(&self) -> &[BoundaryCorner] {
+    pub fn all(&self) -> &[CornerVertex] {
         &self.0
     }
 }

@@ -28,7 +28,7 @@ mod straightness;
 mod surface;
 mod winding;
 
-pub use corners::{BoundaryCorner, BoundaryCorners};
+pub use corners::{BoundaryCorners, CornerVertex};
 pub use error::PiecesError;
 pub use found::{
     BareCurve, CrossingAngle, CurveEnd, CurveMeeting, DoubleCurve, Junction, MultiplePoint, Piece,

@@ -162,26 +162,7 @@ fn dense(bytes: &[u8]) -> Parsed<Distances> {
 
 fn sparse(bytes: &[u8]) -> Parsed<Distances> {
     let mut archive = Archive::open(bytes)?;
-    let missing = |name: &str| {
-        Flaw::new(
-            format!("no array {name}"),
-            "a sparse matrix in csr, csc or coo form",
-        )
-    };
-    let shape = archive
-        .integers("shape", None)?
-        .ok_or_else(|| missing("shape"))?;
-    let count = match shape[..] {
-        [rows, columns] if rows == columns && (1..=i64::from(u32::MAX)).contains(&rows) => {
-            rows as usize
-        }
-        _ => {
-            return Err(Flaw::new(
-                format!("shape {shape:?}"),
-                "a square matrix of 1 to 4294967295 rows",
-            ));
-        }
-    };
+    let count = rows_of(&mut archive)?;
     if !archive.has("indptr") && !archive.has("row") {
         return Err(missing("indptr or row"));
     }
@@ -190,55 +171,12 @@ fn sparse(bytes: &[u8]) -> Parsed<Distances> {
         return Err(Flaw::new(format!("shape {:?}", data.shape), "one dimension").within("data"));
     }
     let data = data.numbers.into_f64();
-    let index = |archive: &mut Archive<'_>, name: &str| -> Parsed<Vec<u32>> {
-        archive
-            .integers(name, None)?
-            .ok_or_else(|| missing(name))?
-            .into_iter()
-            .enumerate()
-            .map(|(at, i)| {
-                u32::try_from(i)
-                    .ok()
-                    .filter(|&i| (i as usize) < count)
-                    .ok_or_else(|| {
-                        Flaw::row(
-                            name,
-                            at,
-                            None,
-                            i.to_string(),
-                            format!("an index from 0 to {}", count - 1),
-                        )
-                    })
-            })
-            .collect()
-    };
-    let (rows, columns) = if archive.has("indptr") {
-        let columns = index(&mut archive, "indices")?;
-        let starts = archive
-            .integers("indptr", None)?
-            .ok_or_else(|| missing("indptr"))?;
-        let ordered = starts.windows(2).all(|w| w[0] <= w[1]);
-        let ends = (starts.first(), starts.last());
-        // Also bounds the memory: a matrix of n rows has n + 1 starts in the file.
-        if starts.len() != count + 1
-            || !ordered
-            || ends != (Some(&0), Some(&(columns.len() as i64)))
-        {
-            return Err(Flaw::new(
-                format!("{} starts from {:?} to {:?}", starts.len(), ends.0, ends.1),
-                format!("{}, rising from 0 to {}", count + 1, columns.len()),
-            )
-            .within("indptr"));
+    let (rows, columns) = match archive.has("indptr") {
+        true => compressed(&mut archive, count)?,
+        false => {
+            let rows = indices(&mut archive, "row", count)?;
+            (rows, indices(&mut archive, "col", count)?)
         }
-        let rows = starts
-            .windows(2)
-            .zip(0..)
-            .flat_map(|(w, row)| (w[0]..w[1]).map(move |_| row))
-            .collect();
-        (rows, columns)
-    } else {
-        let rows = index(&mut archive, "row")?;
-        (rows, index(&mut archive, "col")?)
     };
     if rows.len() != data.len() || columns.len() != data.len() {
         return Err(Flaw::new(
@@ -259,9 +197,77 @@ fn sparse(bytes: &[u8]) -> Parsed<Distances> {
             "distances for most of the rows",
         ));
     }
-    let limit = rounding(&data);
+    SparseDistances::new(count, pairs(&rows, &columns, &data)?)
+        .map(Distances::Sparse)
+        .map_err(|e| Flaw::new(e.to_string(), "a matrix of distances"))
+}
+
+fn missing(name: &str) -> Flaw {
+    Flaw::new(
+        format!("no array {name}"),
+        "a sparse matrix in csr, csc or coo form",
+    )
+}
+
+/// Number of rows of a sparse matrix, which is square.
+fn rows_of(archive: &mut Archive<'_>) -> Parsed<usize> {
+    let shape = archive
+        .integers("shape", None)?
+        .ok_or_else(|| missing("shape"))?;
+    match shape[..] {
+        [rows, columns] if rows == columns && (1..=i64::from(u32::MAX)).contains(&rows) => {
+            Ok(rows as usize)
+        }
+        _ => Err(Flaw::new(
+            format!("shape {shape:?}"),
+            "a square matrix of 1 to 4294967295 rows",
+        )),
+    }
+}
+
+/// An array of rows or columns, all of them below `count`.
+fn indices(archive: &mut Archive<'_>, name: &str, count: usize) -> Parsed<Vec<u32>> {
+    let all = archive.integers(name, None)?.ok_or_else(|| missing(name))?;
+    let index = |(at, i): (usize, i64)| {
+        let inside = u32::try_from(i).ok().filter(|&i| (i as usize) < count);
+        inside.ok_or_else(|| {
+            let expected = format!("an index from 0 to {}", count - 1);
+            Flaw::row(name, at, None, i.to_string(), expected)
+        })
+    };
+    all.into_iter().enumerate().map(index).collect()
+}
+
+/// Rows and columns of the entries in one of the compressed forms; which of the two is which does not matter, since distances go
+/// both ways.
+fn compressed(archive: &mut Archive<'_>, count: usize) -> Parsed<(Vec<u32>, Vec<u32>)> {
+    let columns = indices(archive, "indices", count)?;
+    let starts = archive
+        .integers("indptr", None)?
+        .ok_or_else(|| missing("indptr"))?;
+    let ordered = starts.windows(2).all(|w| w[0] <= w[1]);
+    let ends = (starts.first(), starts.last());
+    // Also bounds the memory: a matrix of n rows has n + 1 starts in the file.
+    if starts.len() != count + 1 || !ordered || ends != (Some(&0), Some(&(columns.len() as i64))) {
+        return Err(Flaw::new(
+            format!("{} starts from {:?} to {:?}", starts.len(), ends.0, ends.1),
+            format!("{}, rising from 0 to {}", count + 1, columns.len()),
+        )
+        .within("indptr"));
+    }
+    let rows = starts
+        .windows(2)
+        .zip(0..)
+        .flat_map(|(w, row)| (w[0]..w[1]).map(move |_| row))
+        .collect();
+    Ok((rows, columns))
+}
+
+/// The distances, one a pair, wherever the file has them.
+fn pairs(rows: &[u32], columns: &[u32], data: &[f64]) -> Parsed<Vec<(Row, Row, f64)>> {
+    let limit = rounding(data);
     let mut entries: Vec<(u32, u32, bool, f64)> = Vec::with_capacity(data.len());
-    for ((&a, &b), &d) in rows.iter().zip(&columns).zip(&data) {
+    for ((&a, &b), &d) in rows.iter().zip(columns).zip(data) {
         let d = entry(d, limit, a as usize, b as usize)?;
         entries.push((a.min(b), a.max(b), a > b, d));
     }
@@ -286,7 +292,5 @@ fn sparse(bytes: &[u8]) -> Parsed<Distances> {
         };
         pairs.push((Row::from(a), Row::from(b), d));
     }
-    SparseDistances::new(count, pairs)
-        .map(Distances::Sparse)
-        .map_err(|e| Flaw::new(e.to_string(), "a matrix of distances"))
+    Ok(pairs)
 }

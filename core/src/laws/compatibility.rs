@@ -1,8 +1,8 @@
 //! Laws of [`CompatibilityTest`].
 
 use super::inputs::{LatticePair, area, lattice_pairs};
-use super::trial::ensure;
-use super::{Failures, Findings, Law, Settings};
+use super::trial::{Outcome, ensure};
+use super::{Failures, Findings, Law, LawBroken, Settings};
 use crate::{CompatibilityTest, Meeting};
 use proptest::prelude::*;
 
@@ -135,8 +135,16 @@ pub fn compatibility(settings: &Settings, test: &impl CompatibilityTest) -> Resu
 /// The laws themselves, compiled once and not for every test that is tested.
 fn laws(settings: &Settings, test: &dyn CompatibilityTest) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &ALL);
-    let pairs = lattice_pairs();
-    found.put(SYMMETRY.holds(settings, &pairs, |pair| {
+    found.put(symmetry(settings, test));
+    found.put(motion(settings, test));
+    found.put(scale(settings, test));
+    found.put(reference(settings, test));
+    found.put(agreement(settings, test));
+    found.end()
+}
+
+fn symmetry(settings: &Settings, test: &dyn CompatibilityTest) -> Result<(), LawBroken> {
+    SYMMETRY.holds(settings, &lattice_pairs(), |pair| {
         let [a, b] = pair.triangles(|p| p);
         let (there, back) = (test.meeting(&a, &b), test.meeting(&b, &a));
         ensure!(
@@ -144,57 +152,63 @@ fn laws(settings: &Settings, test: &dyn CompatibilityTest) -> Result<(), Failure
             "meeting(a, b) is {there:?}, meeting(b, a) is {back:?}"
         );
         Ok(())
-    }));
-    let compare = |pair: &LatticePair, what: &str, place: &dyn Fn([f64; 2]) -> [f64; 2]| {
-        let [a, b] = pair.triangles(|p| p);
-        let [c, d] = pair.triangles(place);
-        let (before, after) = (test.meeting(&a, &b), test.meeting(&c, &d));
-        ensure!(
-            before == after,
-            "{before:?} became {after:?} by {what}: {:?}, {:?}",
-            c.places,
-            d.places
-        );
-        Ok(())
-    };
-    let motions = (
-        0..4_u8,
-        any::<bool>(),
-        [-20..=20_i32, -20..=20_i32],
-        0.0..std::f64::consts::TAU,
+    })
+}
+
+/// Whether two triangles meet as before when all corners have been moved to another `place`.
+fn unchanged(
+    test: &dyn CompatibilityTest,
+    pair: &LatticePair,
+    by: &str,
+    place: impl Fn([f64; 2]) -> [f64; 2],
+) -> Outcome {
+    let [a, b] = pair.triangles(|p| p);
+    let [c, d] = pair.triangles(place);
+    let (before, after) = (test.meeting(&a, &b), test.meeting(&c, &d));
+    ensure!(
+        before == after,
+        "{before:?} became {after:?} by {by}: {:?}, {:?}",
+        c.places,
+        d.places
     );
+    Ok(())
+}
+
+fn motion(settings: &Settings, test: &dyn CompatibilityTest) -> Result<(), LawBroken> {
+    let shifts = [-20..=20_i32, -20..=20_i32];
+    let motions = (0..4_u8, any::<bool>(), shifts, 0.0..std::f64::consts::TAU);
     let moved = (lattice_pairs(), motions);
-    found.put(MOTION.holds(
-        settings,
-        &moved,
-        |(pair, (quarters, mirrored, shift, angle))| {
-            let shift = shift.map(f64::from);
-            compare(pair, "quarter turns and a shift", &|[x, y]| {
-                let x = if *mirrored { -x } else { x };
-                let [x, y] = (0..*quarters).fold([x, y], |[x, y], _| [-y, x]);
-                [x + shift[0], y + shift[1]]
-            })?;
-            if clear(pair) {
-                let (sin, cos) = angle.sin_cos();
-                compare(pair, "a rotation and a shift", &|[x, y]| {
-                    [
-                        cos * x - sin * y + shift[0] / 7.0,
-                        sin * x + cos * y + shift[1] / 7.0,
-                    ]
-                })?;
-            }
-            Ok(())
-        },
-    ));
-    found.put(SCALE.holds(
-        settings,
-        &(lattice_pairs(), -40..=40_i32),
-        |(pair, exponent)| {
-            let factor = f64::from(*exponent).exp2();
-            compare(pair, "scaling", &|p| p.map(|x| x * factor))
-        },
-    ));
-    found.put(REFERENCE.holds(settings, &pairs, |pair| {
+    MOTION.holds(settings, &moved, |(pair, motion)| {
+        let (quarters, mirrored, shift, angle) = motion;
+        let shift = shift.map(f64::from);
+        unchanged(test, pair, "quarter turns and a shift", |[x, y]| {
+            let x = if *mirrored { -x } else { x };
+            let [x, y] = (0..*quarters).fold([x, y], |[x, y], _| [-y, x]);
+            [x + shift[0], y + shift[1]]
+        })?;
+        if !clear(pair) {
+            return Ok(());
+        }
+        let (sin, cos) = angle.sin_cos();
+        unchanged(test, pair, "a rotation and a shift", |[x, y]| {
+            [
+                cos * x - sin * y + shift[0] / 7.0,
+                sin * x + cos * y + shift[1] / 7.0,
+            ]
+        })
+    })
+}
+
+fn scale(settings: &Settings, test: &dyn CompatibilityTest) -> Result<(), LawBroken> {
+    let scaled = (lattice_pairs(), -40..=40_i32);
+    SCALE.holds(settings, &scaled, |(pair, exponent)| {
+        let factor = f64::from(*exponent).exp2();
+        unchanged(test, pair, "scaling", |p| p.map(|x| x * factor))
+    })
+}
+
+fn reference(settings: &Settings, test: &dyn CompatibilityTest) -> Result<(), LawBroken> {
+    REFERENCE.holds(settings, &lattice_pairs(), |pair| {
         let [a, b] = pair.triangles(|p| p);
         let (found, expected) = (test.meeting(&a, &b), reference_meeting(pair));
         ensure!(
@@ -202,8 +216,11 @@ fn laws(settings: &Settings, test: &dyn CompatibilityTest) -> Result<(), Failure
             "meeting(a, b) is {found:?}, expected {expected:?}"
         );
         Ok(())
-    }));
-    found.put(AGREEMENT.holds(settings, &pairs, |pair| {
+    })
+}
+
+fn agreement(settings: &Settings, test: &dyn CompatibilityTest) -> Result<(), LawBroken> {
+    AGREEMENT.holds(settings, &lattice_pairs(), |pair| {
         let [a, b] = pair.triangles(|p| p);
         let (compatible, meeting) = (test.compatible(&a, &b), test.meeting(&a, &b));
         ensure!(
@@ -211,8 +228,7 @@ fn laws(settings: &Settings, test: &dyn CompatibilityTest) -> Result<(), Failure
             "compatible(a, b) is {compatible}, meeting(a, b) is {meeting:?}"
         );
         Ok(())
-    }));
-    found.end()
+    })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::inputs::{clouds, ranks};
 use super::reference::{Scan, StraightLine};
 use super::trial::ensure;
-use super::{Failures, Findings, Law, Settings};
+use super::{Failures, Findings, Law, LawBroken, Settings};
 use crate::{Error, LandmarkSelector, MetricSpace, PointCloud, Scalar};
 use proptest::prelude::*;
 
@@ -137,73 +137,101 @@ fn laws<S: Scalar>(
     settings: &Settings,
     selector: &dyn LandmarkSelector<Scalar = S>,
 ) -> Result<(), Failures> {
+    let tried = Tried { settings, selector };
     let mut found = Findings::new(settings, &ALL);
-    let questions = questions();
-    let metric = |question: &Question| StraightLine(question.cloud.cast::<S>());
-    let select = |q: &Question, separation: f64| {
-        selector.select(
-            &Scan(metric(q)),
-            &q.candidates,
-            &q.taken,
-            separation,
-            q.seed,
-        )
-    };
-    let chosen = |q: &Question| select(q, q.separation).map_err(|e| format!("refused: {e}"));
-    let bad = prop_oneof![Just(0.0), Just(-1.0), Just(f64::NAN)];
-    found.put(REFUSAL.holds(
-        settings,
-        &(questions, bad),
-        |(question, separation)| match select(question, *separation) {
-            Err(Error::Parameter { .. }) => Ok(()),
-            other => Err(format!("the separation {separation} gave {other:?}")),
-        },
-    ));
-    let questions = self::questions();
-    found.put(SUBSET.holds(settings, &questions, |question| {
-        let chosen = chosen(question)?;
-        for (k, c) in chosen.iter().enumerate() {
-            ensure!(
-                question.candidates.contains(c),
-                "point {c} is no candidate, chosen are {chosen:?}"
-            );
-            ensure!(!chosen[..k].contains(c), "point {c} twice in {chosen:?}");
-        }
-        Ok(())
-    }));
-    found.put(SEPARATION.holds(settings, &questions, |question| {
-        let (metric, chosen) = (metric(question), chosen(question)?);
-        for (k, &a) in chosen.iter().enumerate() {
-            for &b in chosen[..k].iter().chain(&question.taken) {
-                let d = metric.distance(a, b).as_f64();
+    found.put(tried.refusal());
+    found.put(tried.subset());
+    found.put(tried.separation());
+    found.put(tried.covering());
+    found.put(tried.reproducible());
+    found.end()
+}
+
+fn metric<S: Scalar>(question: &Question) -> StraightLine<S> {
+    StraightLine(question.cloud.cast::<S>())
+}
+
+/// A selector that is put through its laws.
+struct Tried<'t, S: Scalar> {
+    settings: &'t Settings,
+    selector: &'t dyn LandmarkSelector<Scalar = S>,
+}
+
+impl<S: Scalar> Tried<'_, S> {
+    fn select(&self, q: &Question, separation: f64) -> Result<Vec<usize>, Error> {
+        let oracle = Scan(metric(q));
+        (self.selector).select(&oracle, &q.candidates, &q.taken, separation, q.seed)
+    }
+
+    fn chosen(&self, q: &Question) -> Result<Vec<usize>, String> {
+        (self.select(q, q.separation)).map_err(|e| format!("refused: {e}"))
+    }
+
+    fn refusal(&self) -> Result<(), LawBroken> {
+        let bad = prop_oneof![Just(0.0), Just(-1.0), Just(f64::NAN)];
+        let asked = (questions(), bad);
+        REFUSAL.holds(self.settings, &asked, |(question, separation)| {
+            match self.select(question, *separation) {
+                Err(Error::Parameter { .. }) => Ok(()),
+                other => Err(format!("the separation {separation} gave {other:?}")),
+            }
+        })
+    }
+
+    fn subset(&self) -> Result<(), LawBroken> {
+        SUBSET.holds(self.settings, &questions(), |question| {
+            let chosen = self.chosen(question)?;
+            for (k, c) in chosen.iter().enumerate() {
                 ensure!(
-                    d >= question.separation,
-                    "points {a} and {b} are at distance {d}"
+                    question.candidates.contains(c),
+                    "point {c} is no candidate, chosen are {chosen:?}"
+                );
+                ensure!(!chosen[..k].contains(c), "point {c} twice in {chosen:?}");
+            }
+            Ok(())
+        })
+    }
+
+    fn separation(&self) -> Result<(), LawBroken> {
+        SEPARATION.holds(self.settings, &questions(), |question| {
+            let (metric, chosen) = (metric::<S>(question), self.chosen(question)?);
+            for (k, &a) in chosen.iter().enumerate() {
+                for &b in chosen[..k].iter().chain(&question.taken) {
+                    let d = metric.distance(a, b).as_f64();
+                    ensure!(
+                        d >= question.separation,
+                        "points {a} and {b} are at distance {d}"
+                    );
+                }
+            }
+            Ok(())
+        })
+    }
+
+    fn covering(&self) -> Result<(), LawBroken> {
+        COVERING.holds(self.settings, &questions(), |question| {
+            let (metric, chosen) = (metric::<S>(question), self.chosen(question)?);
+            for &c in &question.candidates {
+                let centers = chosen.iter().chain(&question.taken);
+                let nearest = centers
+                    .map(|&l| metric.distance(c, l).as_f64())
+                    .fold(f64::INFINITY, f64::min);
+                ensure!(
+                    chosen.contains(&c) || nearest < question.separation,
+                    "candidate {c} is at distance {nearest} from {chosen:?} and those taken"
                 );
             }
-        }
-        Ok(())
-    }));
-    found.put(COVERING.holds(settings, &questions, |question| {
-        let (metric, chosen) = (metric(question), chosen(question)?);
-        for &c in &question.candidates {
-            let centers = chosen.iter().chain(&question.taken);
-            let nearest = centers
-                .map(|&l| metric.distance(c, l).as_f64())
-                .fold(f64::INFINITY, f64::min);
-            ensure!(
-                chosen.contains(&c) || nearest < question.separation,
-                "candidate {c} is at distance {nearest} from {chosen:?} and those taken"
-            );
-        }
-        Ok(())
-    }));
-    found.put(REPRODUCIBLE.holds(settings, &questions, |question| {
-        let (first, again) = (chosen(question)?, chosen(question)?);
-        ensure!(first == again, "asked twice: {first:?}, then {again:?}");
-        Ok(())
-    }));
-    found.end()
+            Ok(())
+        })
+    }
+
+    fn reproducible(&self) -> Result<(), LawBroken> {
+        REPRODUCIBLE.holds(self.settings, &questions(), |question| {
+            let (first, again) = (self.chosen(question)?, self.chosen(question)?);
+            ensure!(first == again, "asked twice: {first:?}, then {again:?}");
+            Ok(())
+        })
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::inputs::clouds;
 use super::reference::rounding;
-use super::trial::ensure;
+use super::trial::{Outcome, ensure};
 use super::{Failures, Findings, Law, Settings};
 use crate::{MetricSpace, PointCloud, Scalar};
 
@@ -92,94 +92,108 @@ type Build<'b, 'm, S> = dyn Fn(&PointCloud<f64>) -> Box<dyn MetricSpace<Scalar =
 
 /// The laws themselves, compiled once a type of distances and not for every metric that is tested.
 fn laws<S: Scalar>(settings: &Settings, build: &Build<'_, '_, S>) -> Result<(), Failures> {
+    let tests: [(&'static Law, Test<'_, S>); 6] = [
+        (&NEVER_NAN, |metric| {
+            on_pairs(metric, |_, _, d, _| !d.is_nan())
+        }),
+        (&IDENTITY, |metric| {
+            on_pairs(metric, |a, b, d, _| d >= 0.0 && (a != b || d == 0.0))
+        }),
+        (&SYMMETRY, |metric| {
+            on_pairs(metric, |_, _, d, back| d.to_bits() == back.to_bits())
+        }),
+        (&TRIANGLE, no_detour_is_shorter),
+        (&MANY, many_are_one_by_one),
+        (&PLACES, places_are_straight),
+    ];
     let mut found = Findings::new(settings, &ALL);
     let clouds = clouds(1..=5, 1..=9);
-    // What the test says of a pair and its distances, both ways.
-    let on_pairs = |law: &'static Law, test: fn(usize, usize, f64, f64) -> bool| {
-        law.holds(settings, &clouds, |cloud| {
-            let metric = build(cloud);
-            let d = |a, b| metric.distance(a, b).as_f64();
-            for a in 0..metric.len() {
-                for b in 0..metric.len() {
-                    let (there, back) = (d(a, b), d(b, a));
-                    ensure!(
-                        test(a, b, there, back),
-                        "distance({a}, {b}) = {there}, distance({b}, {a}) = {back}"
-                    );
-                }
-            }
-            Ok(())
-        })
-    };
-    found.put(on_pairs(&NEVER_NAN, |_, _, d, _| !d.is_nan()));
-    found.put(on_pairs(&IDENTITY, |a, b, d, _| {
-        d >= 0.0 && (a != b || d == 0.0)
-    }));
-    found.put(on_pairs(&SYMMETRY, |_, _, d, back| {
-        d.to_bits() == back.to_bits()
-    }));
-    found.put(TRIANGLE.holds(settings, &clouds, |cloud| {
-        let metric = build(cloud);
-        let n = metric.len();
-        let all: Vec<f64> = (0..n * n)
-            .map(|k| metric.distance(k / n, k % n).as_f64())
-            .collect();
-        let d = |a: usize, b: usize| all[a * n + b];
-        // A few roundings a coordinate in each of the three.
-        let slack = 64.0 * rounding::<S>();
-        for a in 0..n {
-            for b in 0..n {
-                for c in a + 1..n {
-                    let round = d(a, b) + d(b, c);
-                    ensure!(
-                        d(a, c) <= round * (1.0 + slack),
-                        "distance({a}, {c}) = {}, yet through {b} it is {} + {} = {round}",
-                        d(a, c),
-                        d(a, b),
-                        d(b, c)
-                    );
-                }
-            }
-        }
-        Ok(())
-    }));
-    found.put(MANY.holds(settings, &clouds, |cloud| {
-        let metric = build(cloud);
-        let n = metric.len();
-        // Backwards, and the first one twice.
-        let to: Vec<usize> = (0..n).rev().chain(n.checked_sub(1)).collect();
-        let mut out = vec![S::of(-1.0)];
-        for from in 0..n {
-            metric.distances_to(from, &to, &mut out);
-            let alone: Vec<f64> = (to.iter().map(|&b| metric.distance(from, b).as_f64())).collect();
-            let many: Vec<f64> = out.iter().map(|d| d.as_f64()).collect();
+    for (law, test) in tests {
+        found.put(law.holds(settings, &clouds, |cloud| test(&*build(cloud))));
+    }
+    found.end()
+}
+
+/// Whether a law holds on one cloud.
+type Test<'m, S> = fn(&(dyn MetricSpace<Scalar = S> + 'm)) -> Outcome;
+
+/// Whether something is true of every two points and their distance, there and back.
+fn on_pairs<S: Scalar>(
+    metric: &dyn MetricSpace<Scalar = S>,
+    test: fn(usize, usize, f64, f64) -> bool,
+) -> Outcome {
+    let d = |a, b| metric.distance(a, b).as_f64();
+    for a in 0..metric.len() {
+        for b in 0..metric.len() {
+            let (there, back) = (d(a, b), d(b, a));
             ensure!(
-                many == alone,
-                "distances_to({from}, {to:?}) = {many:?}, one by one {alone:?}"
+                test(a, b, there, back),
+                "distance({a}, {b}) = {there}, distance({b}, {a}) = {back}"
             );
         }
-        Ok(())
-    }));
-    found.put(PLACES.holds(settings, &clouds, |cloud| {
-        let metric = build(cloud);
-        let (n, slack) = (metric.len(), 64.0 * rounding::<S>());
-        let Some(places) = metric.places() else {
-            return Ok(());
-        };
-        ensure!(places.len() == n, "{} places for {n} points", places.len());
-        for a in 0..n {
-            for b in 0..n {
-                let d = metric.distance(a, b).as_f64();
-                let straight = places.squared_distance(a, b).sqrt();
+    }
+    Ok(())
+}
+
+fn no_detour_is_shorter<S: Scalar>(metric: &dyn MetricSpace<Scalar = S>) -> Outcome {
+    let n = metric.len();
+    let all: Vec<f64> = (0..n * n)
+        .map(|k| metric.distance(k / n, k % n).as_f64())
+        .collect();
+    let d = |a: usize, b: usize| all[a * n + b];
+    // A few roundings a coordinate in each of the three.
+    let slack = 64.0 * rounding::<S>();
+    for a in 0..n {
+        for b in 0..n {
+            for c in a + 1..n {
+                let round = d(a, b) + d(b, c);
                 ensure!(
-                    (d - straight).abs() <= slack * straight,
-                    "distance({a}, {b}) = {d}, the straight line between their places is {straight}"
+                    d(a, c) <= round * (1.0 + slack),
+                    "distance({a}, {c}) = {}, yet through {b} it is {} + {} = {round}",
+                    d(a, c),
+                    d(a, b),
+                    d(b, c)
                 );
             }
         }
-        Ok(())
-    }));
-    found.end()
+    }
+    Ok(())
+}
+
+fn many_are_one_by_one<S: Scalar>(metric: &dyn MetricSpace<Scalar = S>) -> Outcome {
+    let n = metric.len();
+    // Backwards, and the first one twice.
+    let to: Vec<usize> = (0..n).rev().chain(n.checked_sub(1)).collect();
+    let mut out = vec![S::of(-1.0)];
+    for from in 0..n {
+        metric.distances_to(from, &to, &mut out);
+        let alone: Vec<f64> = (to.iter().map(|&b| metric.distance(from, b).as_f64())).collect();
+        let many: Vec<f64> = out.iter().map(|d| d.as_f64()).collect();
+        ensure!(
+            many == alone,
+            "distances_to({from}, {to:?}) = {many:?}, one by one {alone:?}"
+        );
+    }
+    Ok(())
+}
+
+fn places_are_straight<S: Scalar>(metric: &dyn MetricSpace<Scalar = S>) -> Outcome {
+    let (n, slack) = (metric.len(), 64.0 * rounding::<S>());
+    let Some(places) = metric.places() else {
+        return Ok(());
+    };
+    ensure!(places.len() == n, "{} places for {n} points", places.len());
+    for a in 0..n {
+        for b in 0..n {
+            let d = metric.distance(a, b).as_f64();
+            let straight = places.squared_distance(a, b).sqrt();
+            ensure!(
+                (d - straight).abs() <= slack * straight,
+                "distance({a}, {b}) = {d}, the straight line between their places is {straight}"
+            );
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

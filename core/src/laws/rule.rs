@@ -1,7 +1,7 @@
 //! Laws of [`TriangleRule`].
 
 use super::trial::ensure;
-use super::{Failures, Findings, Law, Settings};
+use super::{Failures, Findings, Law, LawBroken, Settings};
 use crate::TriangleRule;
 use proptest::prelude::*;
 
@@ -68,67 +68,87 @@ pub fn rule(settings: &Settings, rule: &impl TriangleRule) -> Result<(), Failure
 /// The laws themselves, compiled once and not for every rule that is tested.
 fn laws(settings: &Settings, rule: &dyn TriangleRule) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &ALL);
-    let edge = || 0.1..1.0_f64;
-    let candidate = || [-3.0..3.0_f64, 0.1..3.0_f64];
-    let near = |x: f64, y: f64| (x - y).abs() <= 1e-9 * (x.abs() + y.abs()) + 1e-12;
-    found.put(
-        SYMMETRY.holds(settings, &(edge(), candidate()), |&(edge, place)| {
-            let [e, a, b] = sides(edge, place);
-            let (there, back) = (rule.rank(e, a, b), rule.rank(e, b, a));
-            ensure!(
-                there == back || near(there, back),
-                "rank({e}, {a}, {b}) is {there}, rank({e}, {b}, {a}) is {back}"
-            );
-            Ok(())
-        }),
-    );
-    let inputs = (edge(), candidate(), candidate(), -30..=30_i32);
-    found.put(
-        SCALE.holds(settings, &inputs, |&(edge, first, second, exponent)| {
-            let factor = f64::from(exponent).exp2();
-            let rank = |place, factor: f64| {
-                let [e, a, b] = sides(edge, place).map(|s| s * factor);
-                rule.rank(e, a, b)
-            };
-            let (p, q) = (rank(first, 1.0), rank(second, 1.0));
-            let (r, s) = (rank(first, factor), rank(second, factor));
-            ensure!(
-                near(p, q) || (p < q) == (r < s) && (p > q) == (r > s),
-                "ranks {p} and {q}; scaled by {factor} they are {r} and {s}"
-            );
-            Ok(())
-        }),
-    );
+    found.put(symmetry(settings, rule));
+    found.put(scale(settings, rule));
+    found.put(without_area(settings, rule));
+    found.put(with_area(settings, rule));
+    found.end()
+}
+
+/// Length of the edge before it is scaled.
+fn edges() -> impl Strategy<Value = f64> {
+    0.1..1.0_f64
+}
+
+/// A candidate on one side of the edge, at least a tenth above it.
+fn candidates() -> impl Strategy<Value = [f64; 2]> {
+    [-3.0..3.0_f64, 0.1..3.0_f64]
+}
+
+/// Whether two ranks differ by rounding alone.
+fn near(x: f64, y: f64) -> bool {
+    (x - y).abs() <= 1e-9 * (x.abs() + y.abs()) + 1e-12
+}
+
+fn symmetry(settings: &Settings, rule: &dyn TriangleRule) -> Result<(), LawBroken> {
+    SYMMETRY.holds(settings, &(edges(), candidates()), |&(edge, place)| {
+        let [e, a, b] = sides(edge, place);
+        let (there, back) = (rule.rank(e, a, b), rule.rank(e, b, a));
+        ensure!(
+            there == back || near(there, back),
+            "rank({e}, {a}, {b}) is {there}, rank({e}, {b}, {a}) is {back}"
+        );
+        Ok(())
+    })
+}
+
+fn scale(settings: &Settings, rule: &dyn TriangleRule) -> Result<(), LawBroken> {
+    let inputs = (edges(), candidates(), candidates(), -30..=30_i32);
+    SCALE.holds(settings, &inputs, |&(edge, first, second, exponent)| {
+        let factor = f64::from(exponent).exp2();
+        let rank = |place, factor: f64| {
+            let [e, a, b] = sides(edge, place).map(|s| s * factor);
+            rule.rank(e, a, b)
+        };
+        let (p, q) = (rank(first, 1.0), rank(second, 1.0));
+        let (r, s) = (rank(first, factor), rank(second, factor));
+        ensure!(
+            near(p, q) || (p < q) == (r < s) && (p > q) == (r > s),
+            "ranks {p} and {q}; scaled by {factor} they are {r} and {s}"
+        );
+        Ok(())
+    })
+}
+
+fn without_area(settings: &Settings, rule: &dyn TriangleRule) -> Result<(), LawBroken> {
     // Lengths that are exact in binary: in line, coinciding, and such as no triangle has.
     let step = || (0..=16_u8).prop_map(|k| f64::from(k) / 8.0);
     let inputs = (step(), step(), step(), 0..3_usize, -30..=30_i32);
-    found.put(
-        DEGENERATE.holds(settings, &inputs, |&(a, b, excess, turn, exponent)| {
-            let factor = f64::from(exponent).exp2();
-            let mut flat = [a + b + excess, a, b].map(|s| s * factor);
-            flat.rotate_left(turn);
-            let [e, a, b] = flat;
-            let rank = rule.rank(e, a, b);
-            ensure!(
-                rank == f64::INFINITY,
-                "rank({e}, {a}, {b}) of a triangle without area is {rank}"
-            );
-            Ok(())
-        }),
-    );
+    DEGENERATE.holds(settings, &inputs, |&(a, b, excess, turn, exponent)| {
+        let factor = f64::from(exponent).exp2();
+        let mut flat = [a + b + excess, a, b].map(|s| s * factor);
+        flat.rotate_left(turn);
+        let [e, a, b] = flat;
+        let rank = rule.rank(e, a, b);
+        ensure!(
+            rank == f64::INFINITY,
+            "rank({e}, {a}, {b}) of a triangle without area is {rank}"
+        );
+        Ok(())
+    })
+}
+
+fn with_area(settings: &Settings, rule: &dyn TriangleRule) -> Result<(), LawBroken> {
     let thin = [-1.0..2.0_f64, 0.002..2.0_f64];
-    found.put(
-        DEGENERATE.holds(settings, &(edge(), thin), |(edge, place)| {
-            let [e, a, b] = sides(*edge, place.map(|x| x * edge));
-            let rank = rule.rank(e, a, b);
-            ensure!(
-                rank < f64::INFINITY,
-                "rank({e}, {a}, {b}) of a triangle with an area is {rank}"
-            );
-            Ok(())
-        }),
-    );
-    found.end()
+    DEGENERATE.holds(settings, &(edges(), thin), |(edge, place)| {
+        let [e, a, b] = sides(*edge, place.map(|x| x * edge));
+        let rank = rule.rank(e, a, b);
+        ensure!(
+            rank < f64::INFINITY,
+            "rank({e}, {a}, {b}) of a triangle with an area is {rank}"
+        );
+        Ok(())
+    })
 }
 
 #[cfg(test)]

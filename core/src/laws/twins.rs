@@ -20,7 +20,11 @@ const SOURCES: [&str; 10] = [
         "mod tests {",
         include_str!("singularity/tests.rs")
     ),
-    include_str!("chart.rs"),
+    concat!(
+        include_str!("chart/mod.rs"),
+        "mod tests {",
+        include_str!("chart/tests.rs")
+    ),
     include_str!("landmarks.rs"),
     include_str!("compatibility.rs"),
     include_str!("rule.rs"),

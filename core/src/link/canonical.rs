@@ -1,33 +1,26 @@
 //! One form for all links that are the same but for the names of their nodes.
 
-use super::Link;
-
-/// The canonical form: of all renamings that keep the order of the nodes' colors, the one with the least
-/// list of arcs.
-pub(super) fn of(link: &Link) -> Link {
-    let nodes = usize::from(link.nodes);
-    let colors = colors(link);
-    let mut order: Vec<u8> = (0..link.nodes).collect();
+/// The arcs of a link of `nodes` nodes in their canonical form: of all renamings that keep the order of the nodes' colors, the one with
+/// the least list. Beyond `most` nodes renamings are not tried out, and only the colors are put in order.
+pub(super) fn arcs(nodes: u8, arcs: &[[u8; 2]], most: usize) -> Vec<[u8; 2]> {
+    let colors = colors(nodes, arcs);
+    let mut order: Vec<u8> = (0..nodes).collect();
     order.sort_by_key(|&v| (colors[usize::from(v)], v));
-    let mut best = renamed(link, &order);
-    if nodes <= Link::MOST_NODES {
+    let mut best = renamed(arcs, &order);
+    if usize::from(nodes) <= most {
         let same = |k: usize, order: &[u8]| {
             (k..order.len())
                 .take_while(|&j| colors[usize::from(order[j])] == colors[usize::from(order[k])])
                 .collect::<Vec<_>>()
         };
         permute(&mut order, 0, &same, &mut |order| {
-            let arcs = renamed(link, order);
+            let arcs = renamed(arcs, order);
             if arcs < best {
                 best = arcs;
             }
         });
     }
-    Link {
-        nodes: link.nodes,
-        arcs: best,
-        circles: link.circles,
-    }
+    best
 }
 
 /// All orders in which nodes of one color, which lie together, change places.
@@ -48,13 +41,12 @@ fn permute(
 }
 
 /// The arcs when the node at place k of `order` is called k, sorted.
-fn renamed(link: &Link, order: &[u8]) -> Vec<[u8; 2]> {
+fn renamed(arcs: &[[u8; 2]], order: &[u8]) -> Vec<[u8; 2]> {
     let mut name = [0u8; 256];
     for (k, &v) in (0u8..).zip(order) {
         name[usize::from(v)] = k;
     }
-    let mut arcs: Vec<[u8; 2]> = link
-        .arcs
+    let mut arcs: Vec<[u8; 2]> = arcs
         .iter()
         .map(|arc| {
             let [a, b] = arc.map(|v| name[usize::from(v)]);
@@ -67,19 +59,18 @@ fn renamed(link: &Link, order: &[u8]) -> Vec<[u8; 2]> {
 
 /// Colors that renaming does not change: degree and number of loops first, then again and again the colors
 /// of the neighbors, until no more nodes are told apart.
-fn colors(link: &Link) -> Vec<usize> {
-    let nodes = usize::from(link.nodes);
-    let mut signature: Vec<Vec<usize>> = (0..link.nodes)
+fn colors(nodes: u8, arcs: &[[u8; 2]]) -> Vec<usize> {
+    let mut signature: Vec<Vec<usize>> = (0..nodes)
         .map(|v| {
-            let loops = link.arcs.iter().filter(|arc| **arc == [v, v]).count();
-            vec![link.degree(v), loops]
+            let degree = arcs.iter().flatten().filter(|&&end| end == v).count();
+            let loops = arcs.iter().filter(|arc| **arc == [v, v]).count();
+            vec![degree, loops]
         })
         .collect();
     let mut colors = ranks(&signature);
     loop {
         for (v, own) in signature.iter_mut().enumerate() {
-            let mut around: Vec<usize> = link
-                .arcs
+            let mut around: Vec<usize> = arcs
                 .iter()
                 .flat_map(|&[a, b]| [(a, b), (b, a)])
                 .filter(|x| usize::from(x.0) == v)

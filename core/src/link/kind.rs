@@ -55,6 +55,13 @@ pub enum LinkKind {
     Split,
 }
 
+impl Link {
+    /// What kind of point has this link, creases taken for smooth sheets.
+    pub fn kind(&self) -> LinkKind {
+        LinkKind::of(self)
+    }
+}
+
 impl LinkKind {
     /// Kinds that need no declaration beyond the marks of the edges.
     pub const GENERIC: [Self; 14] = [
@@ -127,7 +134,7 @@ impl LinkKind {
     }
 
     /// The kind of a link, creases taken for smooth sheets.
-    pub(super) fn of(link: &Link) -> Self {
+    fn of(link: &Link) -> Self {
         let link = link.without_creases();
         let same = |kind: &Self| kind.link().as_ref() == Some(&link);
         Self::NAMED.into_iter().find(same).unwrap_or_else(|| {

@@ -1,7 +1,8 @@
 //! Corners of boundaries that were found.
 
-use super::Found;
 use super::part::Answer;
+use super::region::Found;
+use crate::balls::BallTree;
 use crate::stratify::analysis::{Analysis, Analyzer, Fitter, Scratch};
 use crate::stratify::site::StratumKind;
 use crate::stratify::strata::Strata;
@@ -10,7 +11,7 @@ use crosscap_core::{Row, Scalar};
 /// Asks the `models` about points of boundaries that were found, and says where they see corners. Where another end is, nothing is
 /// asked: its model knows of the boundaries there.
 ///
-/// O(b) fits for boundaries of b balls.
+/// O(b) fits for boundaries of b balls, and O(m log m) for the m points of boundaries that are looked through.
 pub(super) fn answers<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
     fitter: &Fitter<'_, S>,
@@ -25,24 +26,27 @@ pub(super) fn answers<S: Scalar>(
     };
     let mut scratch = Scratch::default();
     let mut out: Vec<Answer> = Vec::new();
-    let mut asked: Vec<Row> = Vec::new();
-    for row in strata.rows().filter(|&row| is_found(strata, row)) {
+    let rows: Vec<Row> = (strata.rows().filter(|&row| is_found(strata, row))).collect();
+    let all: Vec<f64> = (rows
+        .iter()
+        .flat_map(|row| places.point(row.index()))
+        .copied())
+    .collect();
+    let tree = BallTree::new(places.dimension(), &all);
+    let mut asked = vec![false; rows.len()];
+    for (k, &row) in rows.iter().enumerate() {
         let eps = analysis.radius(row);
         let place = places.point(row.index());
-        let spacing = (tuning.corner_spacing * eps).powi(2);
-        let near = |a: &Row| places.squared_distance(a.index(), row.index()) < spacing;
         let known = |a: &Answer| a.region.distance(place) < a.region.reach;
-        if asked.iter().any(near) || others.iter().any(known) {
+        let spacing = tuning.corner_spacing * eps;
+        if tree.any_within(place, spacing, |j, _| asked[j as usize]) || others.iter().any(known) {
             continue;
         }
         // About a corner that is known there is nothing to find.
-        if out
-            .iter()
-            .any(|a| a.region.distance(place) < tuning.corner_spacing * eps)
-        {
+        if out.iter().any(|a| a.region.distance(place) < spacing) {
             continue;
         }
-        asked.push(row);
+        asked[k] = true;
         let mut found = |factor: &f64| -> Option<Found> {
             let one = |&m: &usize| fitter.about_end(m, row, factor * eps, eps, &mut scratch);
             let better = |a: &Found, b: &Found| a.0.fit.residual.total_cmp(&b.0.fit.residual);

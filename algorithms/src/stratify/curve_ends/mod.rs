@@ -19,9 +19,7 @@ use super::strata::Strata;
 use crosscap_core::{Error, Row, Scalar};
 use free::End;
 use part::Answer;
-
-/// A region, and what becomes of its rows.
-type Found = (EndRegion, Vec<Settled>);
+use region::Found;
 
 /// Asks what is at the ends of double curves and about points of boundaries that were found, and enters the answers. Where no curve
 /// was found, or no model knows of ends, nothing is done.

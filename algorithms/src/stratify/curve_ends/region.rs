@@ -29,6 +29,9 @@ pub(in crate::stratify) struct Settled {
     pub(in crate::stratify) beside: Option<On>,
 }
 
+/// A region, and what becomes of its rows.
+pub(super) type Found = (EndRegion, Vec<Settled>);
+
 impl EndRegion {
     /// The rows nearer than `reach` to `place`, each with its label and by row, some beyond, the strata that the
     /// labels name, and the fit that names them.

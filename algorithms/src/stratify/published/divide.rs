@@ -1,6 +1,6 @@
 //! Two planes through a neighborhood, which divide it.
 
-use super::Published;
+use super::analysis::Published;
 use crate::principal::PrincipalFrame;
 use crate::singularity::PlanePair;
 use crate::stratify::analysis::{Fitter, Scratch};

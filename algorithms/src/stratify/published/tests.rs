@@ -5,8 +5,8 @@ use crate::execute::Serial;
 use crate::landmarks::RandomGreedy;
 use crate::metric::{BruteForceOracle, Euclidean};
 use crate::space::Space;
-use crate::stratify::{Stratification, Tuning, WaistProducer};
-use crosscap_core::{Landmark, PointCloud};
+use crate::stratify::{Analyzer, ChartSpace, Stratification, StratumKind, Tuning, WaistProducer};
+use crosscap_core::{Landmark, PointCloud, Row};
 
 fn published() -> Published {
     Published {

@@ -1,6 +1,6 @@
 //! The waist of the published method.
 
-use super::Published;
+use super::analysis::Published;
 use crate::execute;
 use crate::stratify::analysis::{Analysis, Analyzer, Fitter, Scratch};
 use crate::stratify::charts::ChartSpace;
@@ -25,8 +25,28 @@ pub struct PublishedCut<'a, 'p, S: Scalar> {
     chart: &'p dyn LocalChart,
 }
 
+impl Published {
+    /// The producer of a waist (the paper's section 2.2). `analysis` is that of [`Self::analyze`] with the
+    /// same parameters; `charts` measures distances inside the neighborhoods.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a length that is not positive, [`Error::Shape`] for an analysis of another
+    /// number of points.
+    pub fn cut<'a, 'p, S: Scalar>(
+        &self,
+        analyzer: &'p Analyzer<'a, S>,
+        analysis: &'p Analysis,
+        charts: ChartSpace<'a, S>,
+        selector: &'p dyn LandmarkSelector<Scalar = S>,
+        chart: &'p dyn LocalChart,
+    ) -> Result<PublishedCut<'a, 'p, S>, Error> {
+        self.check()?;
+        PublishedCut::new(self.clone(), analyzer, analysis, charts, (selector, chart))
+    }
+}
+
 impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
-    pub(super) fn new(
+    fn new(
         method: Published,
         analyzer: &'p Analyzer<'a, S>,
         analysis: &'p Analysis,

@@ -1,6 +1,6 @@
 //! Curves near a sheet that do not touch it.
 
-use super::Feature;
+use super::feature::Feature;
 use super::plates::square;
 
 /// Half the length of the curve that runs beside the sheet.

@@ -1,7 +1,8 @@
 //! Flat surfaces with holes, slits and cuts.
 
+use super::feature::{Feature, Spot};
 use super::solids::swap;
-use super::{Feature, Random, Spot};
+use crate::surfaces::Random;
 use std::f64::consts::{PI, TAU};
 
 /// Half the length of a slit.

@@ -1,6 +1,7 @@
 //! Spheres, tori and necks: with holes, close to each other, thin.
 
-use super::{Feature, Random, Spot};
+use super::feature::{Feature, Spot, direction};
+use crate::surfaces::Random;
 use std::f64::consts::{PI, TAU};
 
 /// Radius of the tube of the torus with a hole; its middle circle has radius 1.
@@ -158,17 +159,6 @@ fn on_two_spheres(r: &mut Random, away: f64) -> Spot {
     let side = if r.uniform() < 0.5 { 1.0 } else { -1.0 };
     let [x, y, z] = direction(r);
     [x + side * away, y, z]
-}
-
-/// A random place of the unit sphere.
-pub(super) fn direction(r: &mut Random) -> Spot {
-    loop {
-        let p: Spot = std::array::from_fn(|_| r.between(-1.0, 1.0));
-        let size = p.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if size > 0.1 && size < 1.0 {
-            return p.map(|x| x / size);
-        }
-    }
 }
 
 /// A random place of the torus with middle circle of radius 1.

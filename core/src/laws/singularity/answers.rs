@@ -75,6 +75,12 @@ pub(super) fn same(
         (Ok(_), Err(b)) => return Err(format!("accepted, then rejected with {b:?}")),
         (Err(a), Ok(_)) => return Err(format!("rejected with {a:?}, then accepted")),
     };
+    same_numbers(a, b, signs, radius)?;
+    same_strata(a, b, pairs)
+}
+
+/// Whether residuals, parameters and centers are the same.
+fn same_numbers(a: &Decomposition, b: &Decomposition, signs: &[bool], radius: f64) -> Outcome {
     let close = |x: f64, y: f64| x == y || (x - y).abs() <= 1e-6 * radius;
     ensure!(
         close(a.residual, b.residual) && a.parameters == b.parameters,
@@ -100,6 +106,15 @@ pub(super) fn same(
         a.center,
         b.center
     );
+    Ok(())
+}
+
+/// Whether the labels are the same but for their names, and so are the cells at the curves.
+fn same_strata(
+    a: &Decomposition,
+    b: &Decomposition,
+    pairs: impl Iterator<Item = (usize, usize)>,
+) -> Outcome {
     // Names in the second of the strata of the first, and back.
     let mut names: Table<Label, Option<Label>> = Table::filled(a.strata.len(), None);
     let mut back: Table<Label, Option<Label>> = Table::filled(b.strata.len(), None);

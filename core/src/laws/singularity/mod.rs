@@ -1,16 +1,19 @@
 //! Laws of [`SingularityModel`].
 
 mod answers;
+mod asked;
+#[cfg(test)]
+mod tests;
 
-use super::instances::{Draw, Instance};
-use super::motion::{Motion, motions};
-use super::trial::{Outcome, ensure};
-use super::{Failures, Findings, Law, Settings};
-use crate::{Decomposition, SingularityModel};
-use answers::{Answer, about, cells_are_counted, is_true, same, well_formed};
+use super::trial::ensure;
+use super::{Failures, Findings, Law, LawBroken, Settings};
+use crate::SingularityModel;
+use answers::{about, cells_are_counted, is_true, same};
+use asked::{Asked, Case};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use std::ops::RangeInclusive;
+
+pub use asked::Instances;
 
 const SUBJECT: &str = "SingularityModel";
 
@@ -112,43 +115,6 @@ pub(super) static ALL: [&Law; 9] = [
     &PARTITION, &MOTION, &ORDER, &FITTED, &ABOUT, &EXACT, &NOISE, &CELLS, &TRUTH,
 ];
 
-/// Exact instances of what a model describes, given by its author.
-pub struct Instances<'a> {
-    /// Draws one; all its randomness from [`Draw`], about [`Draw::points`] points.
-    pub draw: &'a dyn Fn(&mut Draw) -> Instance,
-    /// How many points instances have.
-    pub points: RangeInclusive<usize>,
-    /// Largest residual on exact data, as a share of the radius.
-    pub exact: f64,
-    /// Least noise that must show in the residual, as a share of the radius; twice and four times as
-    /// much is tried as well.
-    pub noise: f64,
-}
-
-impl<'a> Instances<'a> {
-    /// Instances of 100 to 300 points, exact to a millionth, with noise of half a percent and more.
-    pub fn new(draw: &'a dyn Fn(&mut Draw) -> Instance) -> Self {
-        Self {
-            draw,
-            points: 100..=300,
-            exact: 1e-6,
-            noise: 0.005,
-        }
-    }
-}
-
-/// Which instance, and what is done with it.
-#[derive(Clone, Debug)]
-struct Case {
-    seed: u64,
-    points: usize,
-    /// A share of the radius.
-    noise: f64,
-    motion: Motion,
-    /// Whether each axis is turned round.
-    signs: Vec<bool>,
-}
-
 /// Puts a model through its laws: on exact and noisy instances given by its author, and on poor data
 /// (few points, copies, lattices) where it must not stumble.
 ///
@@ -195,218 +161,125 @@ fn laws(
     instances: &Instances<'_>,
 ) -> Result<(), Failures> {
     let mut found = Findings::new(settings, &ALL);
-    let test = Test { model, instances };
-    let settings = &settings.at_most(256);
-    let noisy = test.cases(4.0 * instances.noise);
-    let exact = test.cases(0.0);
-    let poor = (
-        vec(prop::array::uniform12(-2..=2_i8), 1..=30),
-        any::<bool>(),
-        1..=30_usize,
-    );
-    found.put(PARTITION.holds(settings, &poor, |(rows, far, fitted)| {
-        let fitted = if *far {
-            (*fitted).min(rows.len())
-        } else {
-            rows.len()
-        };
-        test.ask(&test.poor(rows, fitted).principal()).map(|_| ())
-    }));
-    found.put(PARTITION.holds(settings, &noisy, |case| {
-        test.ask(&test.draw(case)?.principal()).map(|_| ())
-    }));
-    found.put(MOTION.holds(settings, &noisy, |case| test.moved(case)));
-    let keys = vec(any::<u16>(), 512);
-    let ordered = (test.cases(4.0 * instances.noise), keys);
-    found.put(ORDER.holds(settings, &ordered, |(case, keys)| {
-        let first = test.draw(case)?.principal();
-        let (other, order) = first.reordered(keys);
-        let pairs = order.iter().enumerate().map(|(new, &old)| (old, new));
-        let (a, b) = (test.ask(&first)?, test.ask(&other)?);
-        same(&a, &b, pairs, &[], first.radius)
-    }));
-    found.put(FITTED.holds(settings, &noisy, |case| {
-        let all = test.draw(case)?.principal();
-        let mut alone = all.clone();
-        alone.coordinates.truncate(all.fitted * all.dimension);
-        alone.truth.truncate(all.fitted);
-        let pairs = (0..all.fitted).map(|k| (k, k));
-        same(&test.ask(&all)?, &test.ask(&alone)?, pairs, &[], all.radius)
-    }));
-    let some = vec(any::<prop::sample::Index>(), 1..=6);
-    let rows = (test.cases(4.0 * instances.noise), some);
-    found.put(ABOUT.holds(settings, &rows, |(case, rows)| {
-        let instance = test.draw(case)?.principal();
-        let rows: Vec<usize> = rows.iter().map(|k| k.index(instance.len())).collect();
-        about(model, &instance, &rows)
-    }));
-    found.put(EXACT.holds(settings, &exact, |case| {
-        let (residual, limit) = {
-            let (instance, fit) = test.accepted(case)?;
-            (fit.residual, instances.exact * instance.radius)
-        };
-        ensure!(
-            residual <= limit,
-            "the residual is {residual}, above {limit}"
-        );
-        Ok(())
-    }));
-    found.put(NOISE.holds(settings, &exact, |case| test.grows(case)));
-    found.put(CELLS.holds(settings, &exact, |case| {
-        let (instance, fit) = test.accepted(case)?;
-        cells_are_counted(&fit, &instance)
-    }));
-    found.put(TRUTH.holds(settings, &exact, |case| {
-        let (instance, fit) = test.accepted(case)?;
-        is_true(&fit, &instance)
-    }));
+    let tried = Tried {
+        settings: settings.at_most(256),
+        asked: Asked { model, instances },
+    };
+    found.put(tried.poor_partition());
+    found.put(tried.partition());
+    found.put(tried.motion());
+    found.put(tried.order());
+    found.put(tried.fitted());
+    found.put(tried.about());
+    found.put(tried.exact());
+    found.put(tried.noise());
+    found.put(tried.cells());
+    found.put(tried.truth());
     found.end()
 }
 
-/// A model, and the instances that it is asked about.
-struct Test<'t> {
-    model: &'t dyn SingularityModel,
-    instances: &'t Instances<'t>,
+/// A model that is put through its laws.
+struct Tried<'t> {
+    settings: Settings,
+    asked: Asked<'t>,
 }
 
-impl Test<'_> {
-    /// Instances with up to so much noise.
-    fn cases(&self, noise: f64) -> impl Strategy<Value = Case> + use<> {
-        let noise = prop_oneof![Just(0.0), 0.0..noise.max(f64::MIN_POSITIVE)];
-        let signs = vec(any::<bool>(), self.model.local_dimension());
-        let points = self.instances.points.clone();
-        (any::<u64>(), points, noise, motions(), signs).prop_map(
-            |(seed, points, noise, motion, signs)| Case {
-                seed,
-                points,
-                noise,
-                motion,
-                signs,
-            },
-        )
+impl Tried<'_> {
+    /// Instances with noise up to the most that is tried.
+    fn noisy(&self) -> impl Strategy<Value = Case> + use<> {
+        self.asked.cases(4.0 * self.asked.instances.noise)
     }
 
-    /// The instance of a case, in the coordinates in which its author drew it.
-    fn draw(&self, case: &Case) -> Result<Instance, String> {
-        let instance = (self.instances.draw)(&mut Draw::new(case.seed, case.points));
-        let dimension = self.model.local_dimension();
-        ensure!(
-            instance.dimension == dimension,
-            "instances have {} coordinates, the model wants {dimension}",
-            instance.dimension
-        );
-        Ok(instance.with_noise(case.seed, case.noise))
+    /// Instances without noise.
+    fn clean(&self) -> impl Strategy<Value = Case> + use<> {
+        self.asked.cases(0.0)
     }
 
-    /// A few points on a lattice, which no model need explain.
-    fn poor(&self, rows: &[[i8; 12]], fitted: usize) -> Instance {
-        let dimension = self.model.local_dimension();
-        let all = rows.iter();
-        let coordinates = all.flat_map(|row| (0..dimension).map(|k| f64::from(row[k % 12]) / 3.0));
-        Instance {
-            dimension,
-            coordinates: coordinates.collect(),
-            fitted,
-            center: 0,
-            radius: 1.5,
-            truth: vec![],
-        }
-    }
-
-    /// What the model says, if it can be true.
-    fn ask(&self, instance: &Instance) -> Result<Answer, String> {
-        let answer = self.model.decompose(&instance.local());
-        if let Ok(d) = &answer {
-            well_formed(d, instance, self.model)?;
-        }
-        Ok(answer)
-    }
-
-    /// What the model says of a case without noise, which it must accept.
-    fn accepted(&self, case: &Case) -> Result<(Instance, Decomposition), String> {
-        let exact = Case {
-            noise: 0.0,
-            ..case.clone()
-        };
-        let instance = self.draw(&exact)?.principal();
-        let fit = self
-            .ask(&instance)?
-            .map_err(|r| format!("rejected with {r:?}"))?;
-        Ok((instance, fit))
-    }
-
-    /// Whether the answer moves with the data.
-    fn moved(&self, case: &Case) -> Outcome {
-        let dimension = self.model.local_dimension();
-        let raw = self.draw(case)?;
-        let first = raw.principal();
-        // Signs by themselves, to the bit.
-        let mut mirrored = first.clone();
-        for row in mirrored.coordinates.chunks_exact_mut(dimension) {
-            for (x, &turned) in row.iter_mut().zip(&case.signs) {
-                *x = if turned { -*x } else { *x };
-            }
-        }
-        let before = self.ask(&first)?;
-        let all = || (0..first.len()).map(|k| (k, k));
-        same(
-            &before,
-            &self.ask(&mirrored)?,
-            all(),
-            &case.signs,
-            raw.radius,
-        )?;
-        let mut moved = raw.clone();
-        case.motion.apply(dimension, &mut moved.coordinates);
-        let moved = moved.principal();
-        let (p, q) = (first.local(), moved.local());
-        let signs: Vec<bool> = (0..dimension)
-            .map(|axis| {
-                let products = (0..raw.len()).map(|k| p.point(k)[axis] * q.point(k)[axis]);
-                products.sum::<f64>() < 0.0
-            })
-            .collect();
-        // Principal directions of nearly equal variance are not determined: nothing to compare.
-        let unturned = (0..raw.len()).all(|k| {
-            (0..dimension).all(|a| {
-                let x = p.point(k)[a];
-                let x = if signs[a] { -x } else { x };
-                (x - q.point(k)[a]).abs() < 1e-9 * raw.radius
-            })
-        });
-        if unturned {
-            same(&before, &self.ask(&moved)?, all(), &signs, raw.radius)?;
-        }
-        Ok(())
-    }
-
-    /// Whether the residual grows with the noise.
-    fn grows(&self, case: &Case) -> Outcome {
-        let mut before = 0.0;
-        for noise in [1.0, 2.0, 4.0].map(|k| k * self.instances.noise) {
-            let noisy = Case {
-                noise,
-                ..case.clone()
-            };
-            let instance = self.draw(&noisy)?.principal();
-            let Ok(d) = self.ask(&instance)? else {
-                return Ok(());
-            };
-            let least = if before == 0.0 {
-                0.1 * noise * instance.radius
+    fn poor_partition(&self) -> Result<(), LawBroken> {
+        let rows = vec(prop::array::uniform12(-2..=2_i8), 1..=30);
+        let poor = (rows, any::<bool>(), 1..=30_usize);
+        PARTITION.holds(&self.settings, &poor, |(rows, far, fitted)| {
+            let fitted = if *far {
+                (*fitted).min(rows.len())
             } else {
-                1.3 * before
+                rows.len()
             };
+            let instance = self.asked.poor(rows, fitted).principal();
+            self.asked.ask(&instance).map(|_| ())
+        })
+    }
+
+    fn partition(&self) -> Result<(), LawBroken> {
+        PARTITION.holds(&self.settings, &self.noisy(), |case| {
+            let instance = self.asked.draw(case)?.principal();
+            self.asked.ask(&instance).map(|_| ())
+        })
+    }
+
+    fn motion(&self) -> Result<(), LawBroken> {
+        MOTION.holds(&self.settings, &self.noisy(), |case| self.asked.moved(case))
+    }
+
+    fn order(&self) -> Result<(), LawBroken> {
+        let ordered = (self.noisy(), vec(any::<u16>(), 512));
+        ORDER.holds(&self.settings, &ordered, |(case, keys)| {
+            let first = self.asked.draw(case)?.principal();
+            let (other, order) = first.reordered(keys);
+            let pairs = order.iter().enumerate().map(|(new, &old)| (old, new));
+            let (a, b) = (self.asked.ask(&first)?, self.asked.ask(&other)?);
+            same(&a, &b, pairs, &[], first.radius)
+        })
+    }
+
+    fn fitted(&self) -> Result<(), LawBroken> {
+        FITTED.holds(&self.settings, &self.noisy(), |case| {
+            let all = self.asked.draw(case)?.principal();
+            let mut alone = all.clone();
+            alone.coordinates.truncate(all.fitted * all.dimension);
+            alone.truth.truncate(all.fitted);
+            let pairs = (0..all.fitted).map(|k| (k, k));
+            let (a, b) = (self.asked.ask(&all)?, self.asked.ask(&alone)?);
+            same(&a, &b, pairs, &[], all.radius)
+        })
+    }
+
+    fn about(&self) -> Result<(), LawBroken> {
+        let some = vec(any::<prop::sample::Index>(), 1..=6);
+        ABOUT.holds(&self.settings, &(self.noisy(), some), |(case, rows)| {
+            let instance = self.asked.draw(case)?.principal();
+            let rows: Vec<usize> = rows.iter().map(|k| k.index(instance.len())).collect();
+            about(self.asked.model, &instance, &rows)
+        })
+    }
+
+    fn exact(&self) -> Result<(), LawBroken> {
+        EXACT.holds(&self.settings, &self.clean(), |case| {
+            let (instance, fit) = self.asked.accepted(case)?;
+            let limit = self.asked.instances.exact * instance.radius;
             ensure!(
-                d.residual >= least,
-                "with noise of {noise} radii the residual is {}, expected {least} or more",
-                d.residual
+                fit.residual <= limit,
+                "the residual is {}, above {limit}",
+                fit.residual
             );
-            before = d.residual;
-        }
-        Ok(())
+            Ok(())
+        })
+    }
+
+    fn noise(&self) -> Result<(), LawBroken> {
+        NOISE.holds(&self.settings, &self.clean(), |case| self.asked.grows(case))
+    }
+
+    fn cells(&self) -> Result<(), LawBroken> {
+        CELLS.holds(&self.settings, &self.clean(), |case| {
+            let (instance, fit) = self.asked.accepted(case)?;
+            cells_are_counted(&fit, &instance)
+        })
+    }
+
+    fn truth(&self) -> Result<(), LawBroken> {
+        TRUTH.holds(&self.settings, &self.clean(), |case| {
+            let (instance, fit) = self.asked.accepted(case)?;
+            is_true(&fit, &instance)
+        })
     }
 }
-
-#[cfg(test)]
-mod tests;

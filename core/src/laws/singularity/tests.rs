@@ -1,7 +1,7 @@
 use super::*;
 use crate::laws::instances::flat_sheet;
 use crate::laws::twins::{each_is_caught, quick};
-use crate::{Label, LocalPoints, Located, Rejection, Stratum};
+use crate::{Decomposition, Label, LocalPoints, Located, Rejection, Stratum};
 
 #[derive(Clone, Copy, PartialEq)]
 enum Fault {
