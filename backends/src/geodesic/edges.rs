@@ -59,6 +59,7 @@ pub(super) fn rows<S: Scalar>(
             for (other, far) in &mut edges {
                 *far = length(point, *other as usize, *far);
             }
+            edges.retain(|edge| edge.1.is_finite());
             Ok(edges)
         })
         .collect()
