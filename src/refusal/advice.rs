@@ -1,6 +1,6 @@
 //! What to do about it.
 
-use super::fault::Fault;
+use super::fault::{Fault, Spot};
 use super::kind::FaultKind;
 use crate::auto::{CLOSEST, ROOMY, Topology};
 use crate::pipeline::{Outcome, Parameters};
@@ -48,6 +48,13 @@ pub enum Advice {
     CloserLandmarks {
         /// Their separation, unit of the data.
         dl: f64,
+    },
+    /// The sheets as clouds of their own, or without the points about the place where they touch.
+    Separate {
+        /// The place, unit of the data.
+        place: Spot,
+        /// The distance from it beyond which the sheets are apart, unit of the data; none where they touch along a curve.
+        radius: Option<f64>,
     },
     /// More points where sheets meet, or a model of one's own.
     Model,
@@ -102,6 +109,13 @@ impl Advice {
                 dl: parameters.map(|run| run.dl),
             },
             FaultKind::Dimension => Self::FewerDimensions,
+            FaultKind::Touching => match &first.worst {
+                Some(place) => Self::Separate {
+                    place: place.clone(),
+                    radius: first.measure,
+                },
+                None => Self::Model,
+            },
             FaultKind::Unclaimed => Self::Model,
             FaultKind::Outliers => Self::LeaveOut {
                 rows: first.worst.iter().filter_map(|spot| spot.row).collect(),
@@ -201,6 +215,16 @@ impl fmt::Display for Advice {
                 f,
                 "give a landmark separation of {dl:.3e} (--dl), so that what the points leave apart stays apart"
             ),
+            Self::Separate { place, radius } => {
+                f.write_str("give each sheet as a cloud of its own")?;
+                if let Some(radius) = radius {
+                    write!(
+                        f,
+                        ", or leave out the points nearer than {radius:.3e} to {place}, which leaves a hole in either sheet"
+                    )?;
+                }
+                f.write_str("; no mesh that this program makes shows sheets that touch")
+            }
             Self::AllModels => f.write_str("let all models compete (--models auto)"),
             Self::Model => f.write_str(
                 "sample more densely where sheets meet; a pinch point or another kind of singularity needs a model of its own",

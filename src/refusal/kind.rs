@@ -15,6 +15,8 @@ pub enum FaultKind {
     Dimension,
     /// Sheets meet in a way that no model claims: a pinch point, more sheets than any model has.
     Unclaimed,
+    /// Two sheets touch without crossing, or come nearer to each other than their points tell.
+    Touching,
     /// Neighborhoods hold too few points.
     TooFewPoints,
     /// Points that no part of the surface is near.
@@ -51,6 +53,7 @@ impl FaultKind {
             Self::Noise => "points scatter across the surface",
             Self::Dimension => "the points fill a space of more than two dimensions",
             Self::Unclaimed => "sheets meet in a way that no model claims",
+            Self::Touching => "two sheets touch without crossing",
             Self::TooFewPoints => "too few points",
             Self::Outliers => "points that no part of the surface is near",
             Self::TwoReadings => "the points do not decide",

@@ -6,7 +6,7 @@ use crate::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap_algorithms::certificate::Limits;
 use crosscap_algorithms::singularity::ModelName;
 use crosscap_algorithms::surfaces::{Drawing, Feature, Random, SampleSurface, Sampling};
-use crosscap_core::PointCloud;
+use crosscap_core::{PointCloud, squared_distance};
 use std::f64::consts::PI;
 
 fn sample(name: &str, count: usize) -> PointCloud<f64> {
@@ -315,4 +315,55 @@ fn two_readings_are_told_and_more_points_decide() {
     assert_eq!(count, 3 * few.count);
     let many = denser("plate-hole", &few, count);
     assert_eq!(verified(&many, Pinned::default()), [1, 1, 0]);
+}
+
+/// A sphere of radius 1 on a plate, or on another sphere, that it touches in the origin.
+fn touching(on_plate: bool) -> PointCloud<f64> {
+    let random = &mut Random::new(6);
+    let mut rows = Vec::new();
+    for k in 0..3600 {
+        let unit = loop {
+            let at = [0; 3].map(|_| random.normal());
+            let length = at.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if length > 1e-9 {
+                break at.map(|x| x / length);
+            }
+        };
+        let [x, y, z] = unit;
+        rows.push(match (k % 2 == 0, on_plate) {
+            (true, _) => [x, y, z + 1.0],
+            (false, false) => [x, y, z - 1.0],
+            (false, true) => {
+                let [x, y] = [0; 2].map(|_| random.between(-1.8, 1.8));
+                [x, y, 0.0]
+            }
+        });
+    }
+    PointCloud::new(3, rows.concat()).unwrap()
+}
+
+#[test]
+fn sheets_that_touch_are_told_and_apart_they_are_verified() {
+    for (on_plate, holes, second) in [(true, [2, 1, 0], [1, 0, 0]), (false, [2, 0, 0], [1, 0, 1])] {
+        let cloud = touching(on_plate);
+        let search = Auto::new(Pinned::default()).reconstruct(&cloud).unwrap();
+        let refusal = search.into_verified(Some(&cloud)).unwrap_err();
+        assert_eq!(refusal.faults[0].kind, FaultKind::Touching, "{refusal}");
+        let Advice::Separate { place, radius } = &refusal.advice else {
+            panic!("{refusal}")
+        };
+        assert!(
+            place.coordinates.iter().all(|x| x.abs() < 0.02),
+            "{refusal}"
+        );
+        let radius = radius.unwrap();
+        let far =
+            |&row: &usize| squared_distance(cloud.point(row), &place.coordinates) > radius * radius;
+        let kept: Vec<usize> = (0..cloud.len()).filter(far).collect();
+        assert_eq!(verified(&cloud.select(&kept), Pinned::default()), holes);
+        let own = |second| (0..cloud.len()).filter(move |row| (row % 2 == 1) == second);
+        let cloud_of = |is_second| cloud.select(&own(is_second).collect::<Vec<_>>());
+        assert_eq!(verified(&cloud_of(false), Pinned::default()), [1, 0, 1]);
+        assert_eq!(verified(&cloud_of(true), Pinned::default()), second);
+    }
 }

@@ -102,6 +102,11 @@ impl QuadraticPatch {
         true
     }
 
+    /// Coefficients of 1, a, b, a^2, a b, b^2.
+    pub(super) fn coefficients(&self) -> [f64; 6] {
+        self.coefficients
+    }
+
     fn local(&self, x: &Vector3<f64>) -> (f64, f64, f64) {
         let d = x - self.origin;
         (

@@ -29,7 +29,7 @@ class Reason:
     ----------
     kind : str
         What is wrong: of a refusal ``"curvature"``, ``"noise"``, ``"dimension"``, ``"unclaimed"``,
-        ``"too-few-points"``, ``"outliers"``, ``"two-readings"``, ``"ends"``, ``"precision"`` or ``"unresolved"``;
+        ``"touching"``, ``"too-few-points"``, ``"outliers"``, ``"two-readings"``, ``"ends"``, ``"precision"`` or ``"unresolved"``;
         of a violation such as ``"undeclared_boundary"``.
     text : str
         The same in a sentence, with the worst place.
@@ -41,7 +41,8 @@ class Reason:
         Coordinates of the worst place, for a violation of the first one; empty where it has none.
     measure : float or None
         How bad it is there: in local spacings for noise; for curvature and too few points how many times as
-        many points are wanted; for a violation of degree the worst value.
+        many points are wanted; for sheets that touch in a point the distance from it beyond which they are
+        apart; for a violation of degree the worst value.
     level : str or None
         For a violation the level of the certificate, such as ``"edges"``.
     limit : float or None
