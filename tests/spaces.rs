@@ -13,7 +13,6 @@ mod custom_model;
 #[allow(dead_code)]
 mod custom_oracle;
 
-use crosscap::comparison::{Comparison, Contender, compare};
 use crosscap::prelude::*;
 use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::dimension::PrincipalComponents;
@@ -360,47 +359,4 @@ fn plug_ins_of_the_guide_pass_the_kit() {
     let (estimator, model) = of_the_guide();
     laws::estimator(&settings, &estimator).unwrap();
     laws::model(&settings, &model, &Instances::new(&instances::two_planes)).unwrap();
-}
-
-#[test]
-fn plug_ins_of_the_guide_run_are_compared_and_are_named() {
-    let cloud = two_spheres();
-    let mine = |cloud: &PointCloud<f64>, parameters: Parameters| {
-        let (estimator, model) = of_the_guide();
-        Ok(Pipeline::new(parameters)?
-            .oracle(Box::new(SortedAxis::new(cloud.clone())))
-            .estimator(Box::new(estimator))
-            .models(vec![Box::new(model)]))
-    };
-    let outcome = mine(&cloud, parameters())
-        .unwrap()
-        .reconstruct(&cloud)
-        .unwrap();
-    assert!(outcome.is_verified());
-    assert_eq!(outcome.homology.betti_rational, [1, 0, 3]);
-    let report = &outcome.report;
-    assert_eq!(report.plugins.estimator.as_deref(), Some("trimmed-pca"));
-    let [model] = &report.models[..] else {
-        panic!("{:?}", report.models);
-    };
-    assert_eq!(model.name, "alternating-planes");
-    assert!(model.won > 0, "{model:?}");
-    // The spheres are far from the faces of the box.
-    let contenders = [
-        Contender::metric("box", |cloud| {
-            let cloud = cloud.clone();
-            Ok(PeriodicBox { cloud, side: 50.0 })
-        }),
-        Contender::pipeline("mine", mine),
-    ];
-    let comparison = Comparison {
-        analysis_eps: Some(parameters().eps),
-        betti: Some([1, 0, 3]),
-        ..Comparison::new([0.9])
-    };
-    let runs = compare(&cloud, &parameters(), &contenders, &comparison, &|| ()).unwrap();
-    for (run, name) in runs.iter().zip(["box", "mine"]) {
-        assert_eq!(run.metric, name);
-        assert!(run.works(), "{run:?}");
-    }
 }
