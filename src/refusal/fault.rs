@@ -47,7 +47,8 @@ impl Fault {
     pub const ROWS: usize = 60;
 }
 
-/// The faults of an outcome that is not handed over: those with a known cause first, and of these those of most places.
+/// The faults of an outcome that is not handed over: sheets that touch first, then those with a known cause, and of these those
+/// of most places.
 pub(super) fn faults(
     outcome: &Result<Outcome, Error>,
     doubt: Option<&Doubt>,
@@ -85,13 +86,16 @@ pub(super) fn faults(
             }
         }
     }
-    // A star that stays open says nothing where something else says why.
+    // No mesh shows sheets that touch, whatever else is wrong with this one; and a star that stays open says nothing where something
+    // else says why.
     faults.sort_by_key(|fault| {
-        (
-            !fault.kind.is_of_the_whole(),
-            fault.kind == FaultKind::Unresolved,
-            std::cmp::Reverse(fault.count),
-        )
+        let rank = match fault.kind {
+            kind if kind.is_of_the_whole() => 0,
+            FaultKind::Touching => 1,
+            FaultKind::Unresolved => 3,
+            _ => 2,
+        };
+        (rank, std::cmp::Reverse(fault.count))
     });
     faults
 }
