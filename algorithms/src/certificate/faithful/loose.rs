@@ -16,6 +16,7 @@ use serde::Serialize;
 
 /// Cosine of the greatest angle between the curve at its end and the way to what it points at.
 const AHEAD: f64 = 0.5;
+
 /// An end of a curve with something ahead.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
