@@ -14,7 +14,7 @@ use crosscap_algorithms::tiles::{
 };
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::{
-    Complex, Error, Landmark, LocalChart, Mesh, PointCloud, Row, SparseDistances,
+    CellNeighborhood, Complex, Error, Landmark, LocalChart, Mesh, PointCloud, Row, SparseDistances,
     StratifiedLandmarks, Table, squared_distance,
 };
 use std::cell::RefCell;
@@ -97,16 +97,12 @@ impl Maker for Tiled<'_> {
                 neighborhoods.extend(own);
             }
         }
-        neighborhoods.sort_by_key(|one| one.center);
+        neighborhoods.sort_by_key(CellNeighborhood::center);
         let distances = SparseDistances::within(landmarks.len(), &neighborhoods, |a, b| {
             squared_distance(landmarks.place(a.index()), landmarks.place(b.index())).sqrt()
         })?;
-        let waist = StratifiedLandmarks {
-            strata: Table::filled(landmarks.len(), 2),
-            curve_edges: Vec::new(),
-            neighborhoods,
-            distances,
-        };
+        let strata = Table::filled(landmarks.len(), 2);
+        let waist = StratifiedLandmarks::new(strata, Vec::new(), neighborhoods, distances)?;
         let rows = landmarks.rows().iter().map(|row| Row::new(row.index()));
         let found = Stratification::new(waist, rows.collect());
         found.check("tiles", self.tiles.points())?;

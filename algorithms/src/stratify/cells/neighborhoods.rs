@@ -111,14 +111,10 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
         let mut progress = Progress { jobs, members };
         let cut = self.flood(&mut progress)?;
         let Progress { jobs, members } = progress;
-        let all = jobs.iter().zip(members).map(|(job, members)| {
-            let center = job.landmark;
-            let others = members.unwrap_or_default();
-            CellNeighborhood {
-                center,
-                members: std::iter::once(center).chain(others).collect(),
-            }
-        });
+        let all = jobs
+            .iter()
+            .zip(members)
+            .map(|(job, members)| CellNeighborhood::new(job.landmark, members.unwrap_or_default()));
         Ok((all.collect(), cut))
     }
 
