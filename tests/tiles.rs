@@ -4,7 +4,7 @@ use crosscap::prelude::*;
 use crosscap_algorithms::certificate::Limits;
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::surfaces::Random;
-use crosscap_algorithms::tiles::{Answer, Question, Tiles, TilesInMemory, Tiling};
+use crosscap_algorithms::tiles::{Answer, CloudRow, Question, Tiles, TilesInMemory, Tiling};
 use std::cell::RefCell;
 
 /// Tiles that count what is asked of them.
@@ -26,11 +26,16 @@ impl Tiles for Counted<'_> {
         self.tiles.halo()
     }
 
+    fn bar(&self, rows: &[CloudRow]) -> Result<(), Error> {
+        self.tiles.bar(rows)
+    }
+
     fn ask(&self, question: &Question) -> Result<Vec<Answer>, Error> {
         let name = match question {
             Question::Copies => "copies",
             Question::Landmarks { .. } => "landmarks",
             Question::Cells(_) => "cells",
+            Question::Balls(_) => "balls",
             Question::Nearest { .. } => "nearest",
             Question::Around { .. } => "around",
             Question::Rows(_) => "rows",
@@ -100,6 +105,15 @@ fn closed_surfaces_are_the_same() {
     let parameters = Parameters::new(0.6, 0.3).surface();
     let (torus, _) = same(&sample("torus", 4000, 1), &parameters, 3000, &[1, 5]);
     assert!(torus.is_verified());
+}
+
+#[test]
+fn surfaces_that_cross_are_the_same() {
+    let parameters = Parameters::new(0.3, 0.15);
+    let cloud = sample("two_spheres", 8000, 1);
+    let (spheres, asked) = same(&cloud, &parameters, 5000, &[1, 4, 16]);
+    assert!(spheres.is_verified());
+    assert!(asked.contains(&"balls"));
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! tile by tile, as many of them side by side as there are threads. Nothing else of the cloud is in memory.
 
 use crate::files::{FileError, PointRows};
-use crosscap_algorithms::landmarks::random_ranks;
+use crosscap_algorithms::landmarks::{random_ranks, random_ranks_but};
 use crosscap_algorithms::tiles::{Answer, CloudRow, Question, Tile, TileId, Tiles, Tiling};
 use crosscap_core::execute::{Execute, few};
 use crosscap_core::{Error, PointCloud, Table};
@@ -42,6 +42,7 @@ pub struct TilesOnDisk<'a> {
     points: usize,
     dimension: usize,
     halo: f64,
+    seed: u64,
     execute: &'a dyn Execute,
     /// Rows of the file that were left out, in order.
     copies: Vec<u32>,
@@ -77,6 +78,7 @@ impl<'a> TilesOnDisk<'a> {
             points: cloud.len(),
             dimension: cloud.dimension(),
             halo,
+            seed,
             execute,
             copies: Vec::new(),
         };
@@ -134,6 +136,19 @@ impl<'a> TilesOnDisk<'a> {
         Tile::new(bounds, self.halo, points, rows, ranks)
     }
 
+    /// Writes other ranks into the records of a part of the file.
+    fn rank_anew(&self, extent: Extent, ranks: &[u32], bytes: &mut Vec<u8>) -> std::io::Result<()> {
+        self.fetch(extent, bytes)?;
+        for record in bytes.chunks_exact_mut(record(self.dimension)) {
+            let (row, rank) = record[NUMBER * self.dimension..].split_at_mut(size_of::<u32>());
+            let row = row.iter().rev().fold(0, |row, &byte| row << 8 | usize::from(byte));
+            rank.copy_from_slice(&ranks[row].to_le_bytes());
+        }
+        let mut file = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
+        file.seek(SeekFrom::Start(extent.at))?;
+        file.write_all(bytes)
+    }
+
     fn fetch(&self, extent: Extent, bytes: &mut Vec<u8>) -> std::io::Result<()> {
         bytes.resize(extent.bytes, 0);
         let mut file = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
@@ -176,6 +191,20 @@ impl Tiles for TilesOnDisk<'_> {
 
     fn left_out(&self) -> usize {
         self.copies.len()
+    }
+
+    fn bar(&self, rows: &[CloudRow]) -> Result<(), Error> {
+        let barred: Vec<u32> = rows.iter().map(|row| row.index() as u32).collect();
+        let ranks = random_ranks_but(self.points, &barred, self.seed);
+        let mut bytes = Vec::new();
+        for &extent in self.extents.iter().flatten() {
+            self.rank_anew(extent, &ranks, &mut bytes)
+                .map_err(|error| Error::Storage {
+                    what: "a random order into the scratch file".into(),
+                    reason: error.to_string(),
+                })?;
+        }
+        Ok(())
     }
 
     fn ask(&self, question: &Question) -> Result<Vec<Answer>, Error> {

@@ -10,7 +10,7 @@ use super::landmarks;
 use super::producer::WaistProducer;
 use super::skeleton::Skeleton;
 use super::strata::Strata;
-use super::stratification::Stratification;
+use super::stratification::{PointStratum, Stratification};
 use crosscap_core::{
     CellNeighborhood, Error, Landmark, LandmarkSelector, PointCloud, Row, Scalar,
     StratifiedLandmarks, Table,
@@ -47,14 +47,14 @@ impl StratifyOptions {
 /// Strata, skeleton and chosen landmarks are made once; [`waist`](WaistProducer::waist) describes the
 /// surroundings of every landmark.
 pub struct Cut<'a, 'p, S: Scalar> {
-    analyzer: &'p Analyzer<'a, S>,
-    strata: Strata,
-    skeleton: Skeleton,
+    pub(super) analyzer: &'p Analyzer<'a, S>,
+    pub(super) strata: Strata,
+    pub(super) skeleton: Skeleton,
     labels: Labels,
-    contacts: Contacts,
+    pub(super) contacts: Contacts,
     chosen: Vec<Row>,
     charts: ChartSpace<'a, S>,
-    options: StratifyOptions,
+    pub(super) options: StratifyOptions,
 }
 
 impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
@@ -72,6 +72,28 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         selector: &dyn LandmarkSelector<Scalar = S>,
         options: &StratifyOptions,
     ) -> Result<Self, Error> {
+        let mut cut = Self::laid(analyzer, analysis, charts, options)?;
+        cut.chosen = landmarks::choose(
+            analyzer,
+            &cut.strata,
+            &cut.skeleton,
+            selector,
+            options.dl,
+            options.seed,
+        )?;
+        Ok(cut)
+    }
+
+    /// The same without landmarks in cells, which somebody else chooses.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new) but the selector's.
+    pub fn laid(
+        analyzer: &'p Analyzer<'a, S>,
+        analysis: &Analysis,
+        charts: ChartSpace<'a, S>,
+        options: &StratifyOptions,
+    ) -> Result<Self, Error> {
         options.check()?;
         if let ChartSpace::Metric(space) = &charts {
             space.audit_metric()?;
@@ -87,7 +109,6 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         let mut strata = Strata::of(analysis, space.places(), gap, dl);
         curve_ends::explain(analyzer, analysis, &mut strata)?;
         let skeleton = Skeleton::lay(analyzer, &strata, dl)?;
-        let chosen = landmarks::choose(analyzer, &strata, &skeleton, selector, dl, options.seed)?;
         let fits: Vec<&Reference> = skeleton.labelling().collect();
         let reach = tuning.cells.label_reach;
         let labels = Labels::new(strata.len(), strata.places(), &fits, reach, *execute);
@@ -98,7 +119,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
             labels,
             contacts,
             skeleton,
-            chosen,
+            chosen: Vec::new(),
             charts,
             options: options.clone(),
         })
@@ -153,7 +174,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
     }
 
     /// What the neighborhoods of landmarks are found from.
-    fn around<'n>(&'n self, rows: &'n Table<Landmark, Row>) -> Neighborhoods<'n, 'a, S> {
+    pub(super) fn around<'n>(&'n self, rows: &'n Table<Landmark, Row>) -> Neighborhoods<'n, 'a, S> {
         Neighborhoods {
             analyzer: self.analyzer,
             strata: &self.strata,
@@ -193,10 +214,7 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
 
     fn waist(&self, extra: &[Row]) -> Result<Stratification<S>, Error> {
         let rows = self.rows(extra);
-        let on_curves = self.skeleton.rows().len();
-        let mut strata = Table::filled(rows.len(), 2);
-        strata.as_mut_slice()[..on_curves].fill(1);
-        strata.as_mut_slice()[..self.skeleton.corners()].fill(0);
+        let strata = self.dimensions(rows.len());
         let (neighborhoods, cut_edges) = self.around(&rows).find(&|_| true)?;
         let distances = within_charts(
             self.analyzer,
@@ -213,7 +231,22 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
         };
         let mut out = Stratification::new(waist, rows);
         out.counts.cut_edges = cut_edges;
-        out.points = (self.skeleton).points(&self.strata, self.analyzer.models);
+        out.points = self.points();
         Ok(out)
+    }
+}
+
+impl<S: Scalar> Cut<'_, '_, S> {
+    /// Dimensions of the strata that so many landmarks are on, those of the skeleton first.
+    pub(crate) fn dimensions(&self, landmarks: usize) -> Table<Landmark, u8> {
+        let mut strata = Table::filled(landmarks, 2);
+        strata.as_mut_slice()[..self.skeleton.rows().len()].fill(1);
+        strata.as_mut_slice()[..self.skeleton.corners()].fill(0);
+        strata
+    }
+
+    /// The points that models call 0-strata.
+    pub(crate) fn points(&self) -> Vec<PointStratum> {
+        (self.skeleton).points(&self.strata, self.analyzer.models)
     }
 }

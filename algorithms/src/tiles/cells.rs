@@ -1,4 +1,4 @@
-//! Neighborhoods of landmarks, tile by tile, on a surface without curves.
+//! Neighborhoods of landmarks, tile by tile, where no curves are near.
 
 use super::question::CellQuestion;
 use super::tile::{ROUNDING, Tile};
@@ -20,7 +20,7 @@ pub(super) fn halo(dl: f64, tri_eps: f64, tuning: &CellTuning) -> f64 {
     (widest + dl) * (1.0 + ROUNDING)
 }
 
-/// The neighborhoods of the landmarks in the box.
+/// The neighborhoods of the landmarks in the box but for those that are cut elsewhere.
 ///
 /// # Errors
 /// [`Error::SparseNeighborhood`] where so few points are near one that its nearest neighbors may be beyond the halo.
@@ -37,7 +37,11 @@ pub(super) fn neighborhoods(
             rows.push(row);
         }
     }
-    let own: Table<Landmark, bool> = rows.iter().map(|&row| tile.owns(row)).collect();
+    let wanted = |k: &Landmark| question.elsewhere.binary_search(k).is_err();
+    let own = rows.iter().zip(&known);
+    let own: Table<Landmark, bool> = own
+        .map(|(&row, k)| tile.owns(row) && wanted(k))
+        .collect();
     if !own.iter().any(|&own| own) {
         return Ok(Vec::new());
     }

@@ -16,8 +16,11 @@
 //! points on them. Whether a ball is 2-dimensional is a matter of the ball alone (`moments`).
 
 mod answer;
+mod balls;
 mod cells;
 mod choice;
+mod curves;
+mod excerpt;
 mod gathered;
 mod greedy;
 mod memory;
@@ -31,9 +34,11 @@ mod tests;
 
 pub use answer::halo;
 pub use choice::landmarks;
+pub use curves::{Curves, NearCurves};
+pub use excerpt::{Candidates, Excerpt, WatchedOracle};
 pub use gathered::Gathered;
 pub use memory::TilesInMemory;
-pub use question::{Answer, BehindQuestion, CellQuestion, Question, Tiles};
+pub use question::{Answer, BallQuestion, BallsOfTile, BehindQuestion, CellQuestion, Question, Tiles};
 pub use row::CloudRow;
 pub use tile::Tile;
 pub use tiling::{Bounds, TileId, Tiling};
