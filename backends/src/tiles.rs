@@ -141,7 +141,10 @@ impl<'a> TilesOnDisk<'a> {
         self.fetch(extent, bytes)?;
         for record in bytes.chunks_exact_mut(record(self.dimension)) {
             let (row, rank) = record[NUMBER * self.dimension..].split_at_mut(size_of::<u32>());
-            let row = row.iter().rev().fold(0, |row, &byte| row << 8 | usize::from(byte));
+            let row = row
+                .iter()
+                .rev()
+                .fold(0, |row, &byte| row << 8 | usize::from(byte));
             rank.copy_from_slice(&ranks[row].to_le_bytes());
         }
         let mut file = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);

@@ -6,7 +6,7 @@ use super::progress::Progress;
 use super::report::{PluginNames, Report};
 use super::rows::LEAST_POINTS;
 use super::tiled::Tiled;
-use super::{Method, Outcome, Parameters, Parts, Pipeline, Stage};
+use super::{Method, Outcome, Parts, Pipeline, Stage};
 use crate::watched::{Distortion, Watched};
 use crosscap_algorithms::certificate::Verdict;
 use crosscap_algorithms::dimension::PrincipalComponents;
@@ -40,6 +40,20 @@ impl Pipeline {
         reach * (1.0 + 1e-9)
     }
 
+    /// How far from balls that are not 2-dimensional the points are gathered that curves are laid in, at first, unit of the data; where it is too
+    /// little they are gathered once more.
+    ///
+    /// Beside the curves fits label points, charts that reach these belong to landmarks beyond, and what is in these charts has to be known with its nearest
+    /// neighbors.
+    pub fn excerpt_reach(&self) -> f64 {
+        let Parts {
+            parameters, tuning, ..
+        } = &self.parts;
+        let charts = 2.0 * parameters.chart_radius();
+        let gaps = (tuning.cells.curve_gap + 1.0) * parameters.dl;
+        charts + gaps + tuning.analysis.label_margin * parameters.eps
+    }
+
     /// Whether tiles can be asked for all that this pipeline wants to know.
     ///
     /// # Errors
@@ -66,6 +80,7 @@ impl Pipeline {
 
     fn tiled(&mut self, tiles: &dyn Tiles) -> Result<Outcome, Error> {
         let halo = self.tile_halo();
+        let reach = self.excerpt_reach();
         let Self {
             parts, observer, ..
         } = self;
@@ -83,7 +98,7 @@ impl Pipeline {
         let asked = Asked { parts, tiles };
         let mut outcome = match parts.parameters.surface {
             true => asked.finished(None, &mut progress)?,
-            false => asked.with_curves(&mut progress)?,
+            false => asked.with_curves(reach, &mut progress)?,
         };
         outcome.report.seconds = progress.finish();
         Ok(outcome)
@@ -105,10 +120,9 @@ struct Found<'f> {
 
 impl Asked<'_> {
     /// The outcome where curves are looked for, in an excerpt that is made wider until it knows all that is asked of it.
-    fn with_curves(&self, progress: &mut Progress<'_>) -> Result<Outcome, Error> {
+    fn with_curves(&self, mut reach: f64, progress: &mut Progress<'_>) -> Result<Outcome, Error> {
         progress.enter(Stage::Neighborhoods);
         let candidates = Candidates::of(self.tiles, self.parts.balls())?;
-        let mut reach = self.parts.excerpt_reach();
         loop {
             let excerpt = Excerpt::gather(self.tiles, &candidates, reach)?;
             let end = self.in_excerpt(&excerpt, progress);
@@ -121,11 +135,7 @@ impl Asked<'_> {
     }
 
     /// The same with an excerpt; of no use where that turns out to be too narrow.
-    fn in_excerpt(
-        &self,
-        excerpt: &Excerpt,
-        progress: &mut Progress<'_>,
-    ) -> Result<Outcome, Error> {
+    fn in_excerpt(&self, excerpt: &Excerpt, progress: &mut Progress<'_>) -> Result<Outcome, Error> {
         let (parts, parameters) = (self.parts, &self.parts.parameters);
         let threads = parts.threads()?;
         let tree = EuclideanOracle::new(excerpt.cloud().clone())?;
@@ -228,15 +238,6 @@ impl Parts {
             dt: self.parameters.dt,
             least: self.tuning.analysis.least_neighbors,
         }
-    }
-
-    /// How far an excerpt goes at first, which is nearly always enough: fits label points beside the curves, charts that reach these
-    /// belong to landmarks beyond, and have to be known as far as they may be widened.
-    fn excerpt_reach(&self) -> f64 {
-        let Parameters { eps, dl, .. } = self.parameters;
-        let cells = &self.tuning.cells;
-        let halo = crosscap_algorithms::tiles::halo(dl, self.parameters.chart_radius(), cells);
-        2.0 * halo + eps
     }
 }
 

@@ -14,7 +14,7 @@ use crosscap_algorithms::tiles::{
 };
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::{
-    Complex, Error, Landmark, LocalChart, Mesh, PointCloud, Row, SparseDistances,
+    CellNeighborhood, Complex, Error, Landmark, LocalChart, Mesh, PointCloud, Row, SparseDistances,
     StratifiedLandmarks, Table, squared_distance,
 };
 use std::cell::RefCell;
@@ -92,21 +92,8 @@ impl Maker for Tiled<'_> {
 
     fn waist(&self, extra: &[Row]) -> Result<Stratification<f64>, Error> {
         let landmarks = self.landmarks(extra)?;
-        let parameters = &self.parts.parameters;
-        let near = self.near_curves(&landmarks);
-        let question = Question::Cells(CellQuestion {
-            landmarks: landmarks.rows().to_vec(),
-            elsewhere: near.ids().filter(|&k| near[k]).collect(),
-            dl: parameters.dl,
-            tri_eps: parameters.chart_radius(),
-            tuning: self.parts.tuning.cells.clone(),
-        });
-        let mut neighborhoods = Vec::new();
-        for answer in self.tiles.ask(&question)? {
-            if let Answer::Cells(own) = answer {
-                neighborhoods.extend(own);
-            }
-        }
+        let mut near = self.near_curves(&landmarks);
+        let mut neighborhoods = self.far_from_curves(&landmarks, &mut near)?;
         let of_curves = match self.curves {
             Some(curves) => curves.neighborhoods(landmarks.rows(), &near)?,
             None => NearCurves::default(),
@@ -169,7 +156,9 @@ impl Maker for Tiled<'_> {
         let mut all = part.clone();
         all.extend(&self.tiles.gather(&around)?);
         let all = all.sorted();
-        let added = self.part(&all, waist)?.with(self, |r| r.rows_where_astray(complex));
+        let added = self
+            .part(&all, waist)?
+            .with(self, |r| r.rows_where_astray(complex));
         Ok(in_cloud(&all, added))
     }
 
@@ -261,8 +250,41 @@ impl Tiled<'_> {
         };
         let on_curves = curves.landmarks().len();
         let near = landmarks.each().enumerate();
-        near.map(|(k, (_, place))| k < on_curves || curves.are_near(place))
+        near.map(|(k, (_, place))| k < on_curves || curves.are_near(place, None))
             .collect()
+    }
+
+    /// The neighborhoods of landmarks that no curves are near, from their tiles; where a chart had to be so wide that one is, the landmark counts
+    /// as `near`, too.
+    fn far_from_curves(
+        &self,
+        landmarks: &Gathered,
+        near: &mut Table<Landmark, bool>,
+    ) -> Result<Vec<CellNeighborhood>, Error> {
+        let parameters = &self.parts.parameters;
+        let question = Question::Cells(CellQuestion {
+            landmarks: landmarks.rows().to_vec(),
+            elsewhere: near.ids().filter(|&k| near[k]).collect(),
+            dl: parameters.dl,
+            tri_eps: parameters.chart_radius(),
+            tuning: self.parts.tuning.cells.clone(),
+        });
+        let mut found = Vec::new();
+        for answer in self.tiles.ask(&question)? {
+            let Answer::Cells(own, radii) = answer else {
+                continue;
+            };
+            for (one, radius) in own.into_iter().zip(radii) {
+                let place = landmarks.place(one.center.index());
+                let curves = self.curves;
+                if curves.is_some_and(|curves| curves.are_near(place, Some(radius))) {
+                    near[one.center] = true;
+                } else {
+                    found.push(one);
+                }
+            }
+        }
+        Ok(found)
     }
 
     /// The landmarks that are there first, and those of `extra` that were not, in their order.

@@ -53,8 +53,8 @@ impl<S: Scalar> Cut<'_, '_, S> {
         self.strata.moved(row)
     }
 
-    /// The neighborhoods of those landmarks that are `wanted`, in cells first and then at curves, and how many edges were cut. Landmarks stand
-    /// for `rows`, those of the skeleton first.
+    /// The neighborhoods of those landmarks that are `wanted`, in cells first and then at curves, how wide their charts are, and how many edges
+    /// were cut. Landmarks stand for `rows`, those of the skeleton first.
     ///
     /// # Errors
     /// [`Error::Law`] for what a plug-in breaks.
@@ -62,8 +62,9 @@ impl<S: Scalar> Cut<'_, '_, S> {
         &self,
         rows: &Table<Landmark, Row>,
         wanted: &Table<Landmark, bool>,
-    ) -> Result<(Vec<CellNeighborhood>, usize), Error> {
-        self.around(rows).find(&|k| wanted[k])
+    ) -> Result<(Vec<CellNeighborhood>, Vec<f64>, usize), Error> {
+        let found = self.around(rows).find(&|k| wanted[k])?;
+        Ok((found.neighborhoods, found.radii, found.cut_edges))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::analysis::{Analysis, Analyzer};
 use super::atlas::Reference;
-use super::cells::{Contacts, Labels, Neighborhoods};
+use super::cells::{Contacts, Found, Labels, Neighborhoods};
 use super::charts::ChartSpace;
 use super::curve_ends;
 use super::distances::within_charts;
@@ -160,17 +160,17 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         })
     }
 
-    /// The neighborhoods of some of the landmarks of a surface without curves.
+    /// The neighborhoods of some of the landmarks of a surface without curves, and how wide their charts are.
     ///
     /// # Errors
     /// [`Error::Law`] for what a plug-in breaks.
     pub(crate) fn neighborhoods(
         &self,
         wanted: &Table<Landmark, bool>,
-    ) -> Result<Vec<CellNeighborhood>, Error> {
+    ) -> Result<(Vec<CellNeighborhood>, Vec<f64>), Error> {
         let rows = self.rows(&[]);
-        let (found, _) = self.around(&rows).find(&|k| wanted[k])?;
-        Ok(found)
+        let found = self.around(&rows).find(&|k| wanted[k])?;
+        Ok((found.neighborhoods, found.radii))
     }
 
     /// What the neighborhoods of landmarks are found from.
@@ -215,7 +215,11 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
     fn waist(&self, extra: &[Row]) -> Result<Stratification<S>, Error> {
         let rows = self.rows(extra);
         let strata = self.dimensions(rows.len());
-        let (neighborhoods, cut_edges) = self.around(&rows).find(&|_| true)?;
+        let Found {
+            neighborhoods,
+            cut_edges,
+            ..
+        } = self.around(&rows).find(&|_| true)?;
         let distances = within_charts(
             self.analyzer,
             &self.strata,

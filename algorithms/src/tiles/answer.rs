@@ -37,7 +37,8 @@ impl Tile {
             Question::Cells(cells) => {
                 let reach = cells::halo(cells.dl, cells.tri_eps, &cells.tuning);
                 self.reaches("tri_eps", reach)?;
-                Answer::Cells(cells::neighborhoods(self, cells)?)
+                let (found, radii) = cells::neighborhoods(self, cells)?;
+                Answer::Cells(found, radii)
             }
             Question::Balls(balls) => {
                 self.reaches("eps", balls.eps)?;

@@ -13,11 +13,7 @@ use crosscap_core::Error;
 ///
 /// # Errors
 /// Those of [`Tiles::ask`]; [`Error::Shape`] where rounds decide nothing, as tiles that do not hold all points do.
-pub fn landmarks(
-    tiles: &dyn Tiles,
-    separation: f64,
-    there: &Gathered,
-) -> Result<Gathered, Error> {
+pub fn landmarks(tiles: &dyn Tiles, separation: f64, there: &Gathered) -> Result<Gathered, Error> {
     let mut taken = there.clone();
     let mut ranks: Vec<u32> = Vec::new();
     loop {

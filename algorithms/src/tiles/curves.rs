@@ -14,8 +14,8 @@ pub struct Curves<'c> {
     cut: &'c Cut<'c, 'c, f64>,
     /// Places that a chart without curves does not reach.
     marked: BallTree,
-    /// How far charts reach that are widened as far as they may be.
-    widest: f64,
+    /// Radius of charts that are not widened.
+    radius: f64,
     /// How much farther than a chart a curve is looked for.
     gap: f64,
     dl: f64,
@@ -50,7 +50,7 @@ impl<'c> Curves<'c> {
         }
         Self {
             marked: BallTree::new(excerpt.cloud().dimension(), &places),
-            widest: tri_eps * tuning.widening.powi(tuning.widenings as i32),
+            radius: tri_eps,
             gap: tuning.curve_gap * dl,
             excerpt,
             cut,
@@ -111,7 +111,9 @@ impl<'c> Curves<'c> {
 
     /// Whether a row of the cloud is on no curve.
     pub fn is_regular(&self, row: CloudRow) -> bool {
-        self.excerpt.find(row).is_none_or(|row| self.cut.is_regular(row))
+        self.excerpt
+            .find(row)
+            .is_none_or(|row| self.cut.is_regular(row))
     }
 
     /// Where a row of the cloud was moved to, if it was looked at.
@@ -119,10 +121,10 @@ impl<'c> Curves<'c> {
         Some(self.cut.place(self.excerpt.find(row)?))
     }
 
-    /// Whether curves come near the charts of a landmark, so that its neighborhoods are [cut](Self::neighborhoods) here and
-    /// not in its tile.
-    pub fn are_near(&self, landmark: &[f64]) -> bool {
-        let reach = self.widest + self.gap;
+    /// Whether curves come near a chart of this radius about a landmark, or of the usual one, so that its neighborhoods are [cut](Self::neighborhoods) here
+    /// and not in its tile.
+    pub fn are_near(&self, landmark: &[f64], radius: Option<f64>) -> bool {
+        let reach = radius.unwrap_or(self.radius) + self.gap;
         (self.marked).any_within(landmark, reach * (1.0 + 1e-9), |_, _| true)
     }
 
@@ -142,19 +144,21 @@ impl<'c> Curves<'c> {
             let k = Landmark::new(k);
             let Some(row) = self.excerpt.find(row) else {
                 // It is no farther than a chart from a point that is known to the curves.
-                self.excerpt.lacks(if near[k] { self.widest + self.gap } else { 0.0 });
+                let missing = self.radius + self.gap;
+                self.excerpt.lacks(if near[k] { missing } else { 0.0 });
                 continue;
             };
-            if near[k] {
-                let moved = self.cut.moved(row);
-                self.excerpt.needs(row, self.widest + self.dl + moved);
-            }
             known.push(k);
             rows.push(row);
             wanted.push(near[k]);
         }
         let on_curves = self.cut.on_curves().len();
-        let (found, cut_edges) = self.cut.neighborhoods_among(&rows, &wanted)?;
+        let (found, radii, cut_edges) = self.cut.neighborhoods_among(&rows, &wanted)?;
+        for (one, radius) in found.iter().zip(radii) {
+            // The nearest neighbors of what is in a chart are within a separation of it, or were asked for.
+            let (row, moved) = (rows[one.center], self.cut.moved(rows[one.center]));
+            self.excerpt.needs(row, radius + self.dl + moved);
+        }
         let name = |k: Landmark| known[k.index()];
         let named = found.into_iter().map(|one| CellNeighborhood {
             center: name(one.center),

@@ -11,9 +11,7 @@ use super::question::{Answer, BallQuestion, Question, Tiles};
 use super::row::CloudRow;
 use crate::balls::BallTree;
 use crate::stratify::KnownBalls;
-use crosscap_core::{
-    BallDimension, Error, Neighbor, NeighborhoodOracle, PointCloud, Row, Table,
-};
+use crosscap_core::{BallDimension, Error, Neighbor, NeighborhoodOracle, PointCloud, Row, Table};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Rounding of lengths that are compared with the reach of an excerpt.
@@ -46,10 +44,13 @@ impl Candidates {
         let (mut neighbors, mut sparse) = (0, None::<(CloudRow, u32)>);
         for answer in tiles.ask(&Question::Balls(question))? {
             let Answer::Balls(own) = answer else { continue };
-            let told = own.balls.iter().map(|&[neighbors, dimension]| BallDimension {
-                neighbors,
-                dimension,
-            });
+            let told = own
+                .balls
+                .iter()
+                .map(|&[neighbors, dimension]| BallDimension {
+                    neighbors,
+                    dimension,
+                });
             balls.extend(own.centers.rows().iter().copied().zip(told));
             centers.extend(&own.centers);
             neighbors += own.neighbors;
@@ -90,11 +91,7 @@ impl Excerpt {
     ///
     /// # Errors
     /// Those of [`Tiles::ask`].
-    pub fn gather(
-        tiles: &dyn Tiles,
-        candidates: &Candidates,
-        reach: f64,
-    ) -> Result<Self, Error> {
+    pub fn gather(tiles: &dyn Tiles, candidates: &Candidates, reach: f64) -> Result<Self, Error> {
         let places = candidates.centers.coordinates();
         let points = match places {
             [] => Gathered::new(tiles.dimension()),
@@ -119,7 +116,11 @@ impl Excerpt {
         let tree = BallTree::new(cloud.dimension(), places);
         let known = cloud.iter().map(|place| {
             let far = tree.nearest(place, |_| true).map_or(0.0, |x| x.1.sqrt());
-            if whole { f64::INFINITY } else { reach * (1.0 - ROUNDING) - far }
+            if whole {
+                f64::INFINITY
+            } else {
+                reach * (1.0 - ROUNDING) - far
+            }
         });
         Ok(Self {
             known: known.collect(),

@@ -38,7 +38,9 @@ pub use curves::{Curves, NearCurves};
 pub use excerpt::{Candidates, Excerpt, WatchedOracle};
 pub use gathered::Gathered;
 pub use memory::TilesInMemory;
-pub use question::{Answer, BallQuestion, BallsOfTile, BehindQuestion, CellQuestion, Question, Tiles};
+pub use question::{
+    Answer, BallQuestion, BallsOfTile, BehindQuestion, CellQuestion, Question, Tiles,
+};
 pub use row::CloudRow;
 pub use tile::Tile;
 pub use tiling::{Bounds, TileId, Tiling};

@@ -100,8 +100,8 @@ pub enum Answer {
         /// How many points in the box are neither landmarks nor close to one, as far as is known.
         open: usize,
     },
-    /// Neighborhoods.
-    Cells(Vec<CellNeighborhood>),
+    /// Neighborhoods, and the radii of their charts, unit of the data.
+    Cells(Vec<CellNeighborhood>, Vec<f64>),
     /// Balls.
     Balls(BallsOfTile),
     /// Nearest points of places, in no order, and the numbers of those places in the box whose nearest point may be

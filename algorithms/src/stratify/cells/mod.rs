@@ -11,7 +11,7 @@ mod region;
 
 pub(super) use contacts::Contacts;
 pub(super) use labels::Labels;
-pub(super) use neighborhoods::Neighborhoods;
+pub(super) use neighborhoods::{Found, Neighborhoods};
 
 crosscap_core::id! {
     /// A node of the graph: a regular point of the region where floods run.

@@ -50,7 +50,23 @@ type Reach = Table<Landmark, f64>;
 /// What has been found so far.
 struct Progress {
     jobs: Vec<Job>,
-    members: Vec<Option<Vec<Landmark>>>,
+    members: Vec<Option<Members>>,
+}
+
+/// The others in a neighborhood.
+struct Members {
+    landmarks: Vec<Landmark>,
+    /// Radius of the chart that they were found in.
+    radius: f64,
+}
+
+/// Neighborhoods, those of landmarks in cells first.
+pub(in crate::stratify) struct Found {
+    pub(in crate::stratify) neighborhoods: Vec<CellNeighborhood>,
+    /// Radius of the chart of each, which is wider than asked for where that held few landmarks.
+    pub(in crate::stratify) radii: Vec<f64>,
+    /// How many edges of the graph were cut.
+    pub(in crate::stratify) cut_edges: usize,
 }
 
 /// The extent of one chart: which nodes of the graph and which landmarks are in it, how far from its center.
@@ -99,27 +115,31 @@ impl<S: Scalar> Extent<'_, S> {
 }
 
 impl<S: Scalar> Neighborhoods<'_, '_, S> {
-    /// The neighborhoods of the landmarks that are `wanted`, landmarks of cells first, and how many edges of the graph
-    /// were cut.
+    /// The neighborhoods of the landmarks that are `wanted`.
     pub(in crate::stratify) fn find(
         &self,
         wanted: &dyn Fn(Landmark) -> bool,
-    ) -> Result<(Vec<CellNeighborhood>, usize), Error> {
+    ) -> Result<Found, Error> {
         let mut jobs = self.jobs();
         jobs.retain(|job| wanted(job.landmark));
         let members = self.plain(&jobs)?;
         let mut progress = Progress { jobs, members };
-        let cut = self.flood(&mut progress)?;
-        let Progress { jobs, members } = progress;
-        let all = jobs.iter().zip(members).map(|(job, members)| {
+        let mut found = Found {
+            cut_edges: self.flood(&mut progress)?,
+            neighborhoods: Vec::with_capacity(progress.jobs.len()),
+            radii: Vec::with_capacity(progress.jobs.len()),
+        };
+        for (job, members) in progress.jobs.iter().zip(progress.members) {
             let center = job.landmark;
-            let others = members.unwrap_or_default();
-            CellNeighborhood {
+            let (others, radius) =
+                members.map_or((Vec::new(), self.reach), |own| (own.landmarks, own.radius));
+            found.radii.push(radius);
+            found.neighborhoods.push(CellNeighborhood {
                 center,
                 members: std::iter::once(center).chain(others).collect(),
-            }
-        });
-        Ok((all.collect(), cut))
+            });
+        }
+        Ok(found)
     }
 
     fn jobs(&self) -> Vec<Job> {
@@ -137,7 +157,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
     }
 
     /// Neighborhoods of one sheet without a curve, where nearness alone says what belongs together.
-    fn plain(&self, jobs: &[Job]) -> Result<Vec<Option<Vec<Landmark>>>, Error> {
+    fn plain(&self, jobs: &[Job]) -> Result<Vec<Option<Members>>, Error> {
         if let ChartSpace::Metric(_) = self.charts {
             return Ok(jobs.iter().map(|_| None).collect());
         }
@@ -172,7 +192,10 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
             let far = |k: Landmark| places.squared_distance(center, self.rows[k].index());
             around
                 .is_plain(landmark, radius, &members, scratch)
-                .then(|| nearest_first(members, far))
+                .then(|| Members {
+                    landmarks: nearest_first(members, far),
+                    radius,
+                })
         };
         Ok(execute::map(
             self.analyzer.execute,
@@ -212,7 +235,10 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
             let mut thin = Vec::new();
             for (&j, found) in pending.iter().zip(flooded) {
                 if found.len() >= tuning.least_members || widening == tuning.widenings {
-                    members[j] = Some(found);
+                    members[j] = Some(Members {
+                        landmarks: found,
+                        radius,
+                    });
                 } else {
                     thin.push(j);
                 }
