@@ -42,11 +42,13 @@ const TILE_POINT: f64 = 120.0;
 /// Of every coordinate of a tile that is asked.
 const TILE_COORDINATE: f64 = 40.0;
 /// Of every point of the excerpt that curves are laid in, beside its coordinates.
-const EXCERPT_POINT: f64 = 250.0;
+const EXCERPT_POINT: f64 = 180.0;
 /// Of every coordinate of it.
 const EXCERPT_COORDINATE: f64 = 60.0;
 /// A ball of a sample must hold so many points on average for its dimension to say something.
 const SAMPLED_BALL: f64 = 40.0;
+/// A crossing shows in balls about points up to so many radii from it, or farther.
+const SHOWN_FROM: f64 = 0.6;
 
 const MIB: f64 = (1 << 20) as f64;
 
@@ -119,8 +121,7 @@ impl Needs {
         (self.in_one_place() + self.points as f64 * point) as u64
     }
 
-    /// About how many points the excerpt has that curves are laid in, more rather than less: balls of a sample have to be larger, and larger ones
-    /// show a crossing from farther away.
+    /// About how many points the excerpt has that curves are laid in. Balls of a sample have to be larger, and show a crossing from farther away.
     pub fn excerpt(&self, sample: &PointCloud<f64>, pipeline: &Pipeline) -> Result<usize, Error> {
         let Parameters {
             eps, dt, surface, ..
@@ -133,13 +134,15 @@ impl Needs {
         let mut balls = of(eps)?;
         let total: f64 = balls.iter().map(|ball| f64::from(ball.neighbors)).sum();
         let fuller = SAMPLED_BALL * balls.len() as f64 / total;
+        let mut reach = pipeline.excerpt_reach();
         if fuller > 1.0 && sample.len() < self.points {
-            balls = of(eps * fuller.sqrt())?;
+            let wide = eps * fuller.sqrt();
+            balls = of(wide)?;
+            reach = (reach - SHOWN_FROM * (wide - eps)).max(eps);
         }
         let curved = balls.iter().enumerate().filter(|x| x.1.dimension != 2);
         let curved: Vec<usize> = curved.map(|x| x.0).collect();
         let near = EuclideanOracle::new(sample.select(&curved))?;
-        let reach = pipeline.excerpt_reach();
         let count = sample.iter().filter(|p| near.is_near(p, reach)).count();
         Ok((count as f64 / sample.len() as f64 * self.points as f64) as usize)
     }

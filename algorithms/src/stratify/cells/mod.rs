@@ -3,6 +3,7 @@
 
 mod contacts;
 mod flood;
+mod found;
 mod graph;
 mod labels;
 mod neighborhoods;
@@ -10,8 +11,9 @@ mod plain;
 mod region;
 
 pub(super) use contacts::Contacts;
+pub(super) use found::Found;
 pub(super) use labels::Labels;
-pub(super) use neighborhoods::{Found, Neighborhoods};
+pub(super) use neighborhoods::Neighborhoods;
 
 crosscap_core::id! {
     /// A node of the graph: a regular point of the region where floods run.

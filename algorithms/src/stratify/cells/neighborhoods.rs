@@ -1,6 +1,7 @@
 //! The landmarks around each landmark, in each of its cells.
 
 use super::contacts::{Contacts, Hits};
+use super::found::{Found, Members};
 use super::graph::CellGraph;
 use super::labels::Labels;
 use super::plain::{self, Surroundings};
@@ -15,8 +16,7 @@ use crate::stratify::curve_ends::Wards;
 use crate::stratify::skeleton::Skeleton;
 use crate::stratify::strata::Strata;
 use crosscap_core::{
-    CellNeighborhood, Error, Landmark, Neighbor, NeighborhoodOracle, PointCloud, Row, Scalar,
-    Table, squared_distance,
+    Error, Landmark, Neighbor, NeighborhoodOracle, PointCloud, Row, Scalar, Table, squared_distance,
 };
 
 /// Floods that a job takes at a time.
@@ -51,22 +51,6 @@ type Reach = Table<Landmark, f64>;
 struct Progress {
     jobs: Vec<Job>,
     members: Vec<Option<Members>>,
-}
-
-/// The others in a neighborhood.
-struct Members {
-    landmarks: Vec<Landmark>,
-    /// Radius of the chart that they were found in.
-    radius: f64,
-}
-
-/// Neighborhoods, those of landmarks in cells first.
-pub(in crate::stratify) struct Found {
-    pub(in crate::stratify) neighborhoods: Vec<CellNeighborhood>,
-    /// Radius of the chart of each, which is wider than asked for where that held few landmarks.
-    pub(in crate::stratify) radii: Vec<f64>,
-    /// How many edges of the graph were cut.
-    pub(in crate::stratify) cut_edges: usize,
 }
 
 /// The extent of one chart: which nodes of the graph and which landmarks are in it, how far from its center.
@@ -124,20 +108,9 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
         jobs.retain(|job| wanted(job.landmark));
         let members = self.plain(&jobs)?;
         let mut progress = Progress { jobs, members };
-        let mut found = Found {
-            cut_edges: self.flood(&mut progress)?,
-            neighborhoods: Vec::with_capacity(progress.jobs.len()),
-            radii: Vec::with_capacity(progress.jobs.len()),
-        };
+        let mut found = Found::of(self.flood(&mut progress)?);
         for (job, members) in progress.jobs.iter().zip(progress.members) {
-            let center = job.landmark;
-            let (others, radius) =
-                members.map_or((Vec::new(), self.reach), |own| (own.landmarks, own.radius));
-            found.radii.push(radius);
-            found.neighborhoods.push(CellNeighborhood {
-                center,
-                members: std::iter::once(center).chain(others).collect(),
-            });
+            found.take(job.landmark, members.unwrap_or_default());
         }
         Ok(found)
     }
