@@ -367,22 +367,17 @@ fn waist(places: PointCloud<f64>) -> Outcome<StratifiedLandmarks<f64>> {
     let neighborhoods: Vec<CellNeighborhood> = (0..count)
         .map(|center| {
             oracle.within(center, 3.0, &mut near);
-            CellNeighborhood {
-                center: Landmark::new(center),
-                members: near.iter().map(|x| Landmark::new(x.index)).collect(),
-            }
+            let members = near.iter().map(|x| Landmark::new(x.index));
+            CellNeighborhood::new(Landmark::new(center), members)
         })
         .collect();
     let cloud = oracle.cloud();
     let distances = SparseDistances::within(count, &neighborhoods, |a, b| {
         squared_distance(cloud.point(a.index()), cloud.point(b.index())).sqrt()
     })?;
-    Ok(StratifiedLandmarks {
-        strata: Table::filled(count, 2),
-        curve_edges: Vec::new(),
-        neighborhoods,
-        distances,
-    })
+    let strata = Table::filled(count, 2);
+    let waist = StratifiedLandmarks::new(strata, Vec::new(), neighborhoods, distances)?;
+    Ok(waist)
 }
 
 /// Argument: rows of the lattice. Triangulation alone.
@@ -392,7 +387,7 @@ fn triangulate(arguments: &[String]) -> Outcome<Value> {
     let (before, memory) = (cpu(), peak());
     let pipeline = Pipeline::new(Parameters::new(3.0, 1.0).surface())?;
     let found = pipeline.triangulate(&input)?;
-    let count = input.strata.len();
+    let count = input.strata().len();
     Ok(json!({
         "landmarks": count,
         "cpu": cpu() - before,

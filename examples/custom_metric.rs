@@ -69,14 +69,12 @@ fn flat_torus(
             let with = |&b: &Landmark| (a, b, metric.distance(rows[a], rows[b]));
             distances.extend(members[..k].iter().map(with));
         }
-        neighborhoods.push(CellNeighborhood { center, members });
+        neighborhoods.push(CellNeighborhood::new(center, members));
     }
-    Ok(StratifiedLandmarks {
-        strata: Table::filled(rows.len(), 2),
-        curve_edges: Vec::new(),
-        neighborhoods,
-        distances: SparseDistances::new(rows.len(), distances)?,
-    })
+    let distances = SparseDistances::new(rows.len(), distances)?;
+    let strata = Table::filled(rows.len(), 2);
+    let waist = StratifiedLandmarks::new(strata, Vec::new(), neighborhoods, distances)?;
+    Ok(waist)
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

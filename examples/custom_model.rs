@@ -188,9 +188,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 
     use crosscap::prelude::*;
-    let sample = SampleSurface::find("two_spheres")?.sample(&Sampling::new(9000, 2))?;
-    let model = AlternatingPlanes { dp: 0.05, ep: 0.06 };
-    let outcome = Pipeline::new(Parameters::new(0.35, 0.25))?
+    let sample = SampleSurface::find("two_spheres")?.sample(&Sampling::new(11_000, 2))?;
+    // In a ball of 0.25 a unit sphere leaves its plane by 0.03.
+    let model = AlternatingPlanes { dp: 0.04, ep: 0.04 };
+    let outcome = Pipeline::new(Parameters::new(0.25, 0.15))?
         .models(vec![Box::new(model)])
         .reconstruct(&sample.points)?;
     println!(

@@ -96,6 +96,10 @@ impl NeighborhoodOracle for SortedAxis {
                     .is_some_and(|x| along * (1.0 - ROUNDING) <= x.distance)
         });
     }
+
+    fn name(&self) -> &str {
+        "sorted-axis"
+    }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

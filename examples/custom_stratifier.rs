@@ -59,15 +59,12 @@ impl WaistProducer<f64> for Charts<'_> {
                 order.then(a.cmp(&b))
             });
             members.truncate(self.size);
-            CellNeighborhood { center, members }
+            CellNeighborhood::new(center, members)
         };
         let neighborhoods: Vec<CellNeighborhood> = rows.ids().map(around).collect();
-        let waist = StratifiedLandmarks {
-            strata: Table::filled(rows.len(), 2),
-            curve_edges: Vec::new(),
-            distances: SparseDistances::within(rows.len(), &neighborhoods, apart)?,
-            neighborhoods,
-        };
+        let distances = SparseDistances::within(rows.len(), &neighborhoods, apart)?;
+        let strata = Table::filled(rows.len(), 2);
+        let waist = StratifiedLandmarks::new(strata, Vec::new(), neighborhoods, distances)?;
         Ok(Stratification::new(waist, rows))
     }
 

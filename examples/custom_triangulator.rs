@@ -23,7 +23,7 @@ impl<C: LocalChart> Consensus<C> {
         members: &[Landmark],
     ) -> Result<Vec<[Landmark; 3]>, Error> {
         let k = members.len();
-        let between = |i: usize, j: usize| waist.distances.get(members[i], members[j]);
+        let between = |i: usize, j: usize| waist.distances().get(members[i], members[j]);
         let matrix: Vec<f64> = (0..k * k)
             .map(|e| between(e / k, e % k).unwrap_or(0.0))
             .collect();
@@ -56,12 +56,12 @@ impl<C: LocalChart> Triangulator<f64> for Consensus<C> {
     fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
         // How many corners know a triangle.
         let mut known: BTreeMap<[Landmark; 3], usize> = BTreeMap::new();
-        for near in &waist.neighborhoods {
-            for corners in self.star(waist, &near.members)? {
+        for near in waist.neighborhoods() {
+            for corners in self.star(waist, near.members())? {
                 *known.entry(corners).or_default() += 1;
             }
         }
-        let count = waist.strata.len();
+        let count = waist.strata().len();
         let mut open: Table<Landmark, bool> = Table::filled(count, false);
         for (corners, _) in known.iter().filter(|&(_, &n)| n < 3) {
             corners.iter().for_each(|&c| open[c] = true);
@@ -71,7 +71,7 @@ impl<C: LocalChart> Triangulator<f64> for Consensus<C> {
             complex: Complex::new(
                 count,
                 known.into_keys().map(|t| t.map(u32::from)).collect(),
-                waist.curve_edges.clone(),
+                waist.curve_edges().to_vec(),
             )?,
             dropped: Vec::new(),
             incomplete: (open.ids())
@@ -79,7 +79,7 @@ impl<C: LocalChart> Triangulator<f64> for Consensus<C> {
                 .map(|landmark| Incomplete { landmark })
                 .collect(),
             counts: TriangulationCounts {
-                visits: waist.neighborhoods.len(),
+                visits: waist.neighborhoods().len(),
                 ..TriangulationCounts::default()
             },
         })

@@ -47,23 +47,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     .total_cmp(&distance(center, b))
                     .then(a.cmp(&b))
             });
-            CellNeighborhood {
-                center: Landmark::new(center),
-                members: members.into_iter().map(Landmark::new).collect(),
-            }
+            CellNeighborhood::new(
+                Landmark::new(center),
+                members.into_iter().map(Landmark::new),
+            )
         })
         .collect();
     // Two members of one chart are nearer than two radii.
     let pairs = (0..n).flat_map(|a| (0..a).map(move |b| (a, b)));
     let kept = pairs.filter(|&(a, b)| distance(a, b) < 2.0 * radius);
     let kept = kept.map(|(a, b)| (Landmark::new(a), Landmark::new(b), distance(a, b)));
-    let waist = StratifiedLandmarks {
-        strata: Table::filled(n, 2),
-        curve_edges: Vec::new(),
-        neighborhoods,
-        distances: SparseDistances::new(n, kept)?,
-    };
-    waist.check()?;
+    let distances = SparseDistances::new(n, kept)?;
+    let strata = Table::filled(n, 2);
+    let waist = StratifiedLandmarks::new(strata, Vec::new(), neighborhoods, distances)?;
     let triangulation = AdvancingFront {
         chart: &ClassicalScaling,
         test: &PlanarPredicate,

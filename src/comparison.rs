@@ -1,6 +1,6 @@
 //! Which metric, and up to which radius: the same points by several metrics at several radii.
 
-use crate::pipeline::{Outcome, Parameters, Pipeline};
+use crate::pipeline::{Outcome, Parameters, Pipeline, PluginNames};
 use crate::spaces::{MetricName, Spaces};
 use crate::watched::Distortion;
 use crosscap_backends::parallel::Threads;
@@ -134,6 +134,12 @@ pub struct ComparedRun {
     pub distortion: Option<Distortion>,
     /// Why there is no verified mesh, or what speaks against one that is verified.
     pub reason: Option<String>,
+    /// What worked on the points, by the names that the plug-ins give themselves; none where there is no mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plugins: Option<PluginNames>,
+    /// The singularity models that took part, by their own names.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub models: Vec<String>,
     /// Seconds on one thread.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
@@ -259,6 +265,8 @@ fn one(
         triangles: None,
         distortion: None,
         reason: None,
+        plugins: None,
+        models: Vec::new(),
         seconds: Some(since.elapsed().as_secs_f64()),
     };
     match outcome {
@@ -270,6 +278,9 @@ fn one(
             run.vertices = Some(outcome.mesh.complex.vertices);
             run.triangles = Some(outcome.mesh.complex.triangles.len());
             run.distortion = Some(outcome.report.chart_distortion);
+            let models = outcome.report.models.into_iter();
+            run.models = models.map(|model| model.name).collect();
+            run.plugins = Some(outcome.report.plugins);
         }
         Err(error) => run.reason = Some(error.to_string()),
     }

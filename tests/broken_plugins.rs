@@ -461,10 +461,10 @@ struct Lost(fn(&mut Triangulation));
 
 impl Triangulator<f64> for Lost {
     fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
-        let count = waist.strata.len();
-        let open = waist.strata.ids().map(|landmark| Incomplete { landmark });
+        let count = waist.strata().len();
+        let open = waist.strata().ids().map(|landmark| Incomplete { landmark });
         let mut found = Triangulation {
-            complex: Complex::new(count, vec![], waist.curve_edges.clone())?,
+            complex: Complex::new(count, vec![], waist.curve_edges().to_vec())?,
             dropped: vec![],
             incomplete: open.collect(),
             counts: TriangulationCounts::default(),

@@ -237,7 +237,7 @@ proptest! {
                 prop_assert!(at_the_separation(&rounded, &rows), "{:?}", rows);
                 continue;
             }
-            prop_assert_eq!(&narrow.waist.strata, &wide.waist.strata);
+            prop_assert_eq!(narrow.waist.strata(), wide.waist.strata());
             let narrow = triangulated(&narrow.waist);
             prop_assert_eq!(narrow, triangulated(&wide.waist));
         }

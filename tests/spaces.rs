@@ -13,6 +13,7 @@ mod custom_model;
 #[allow(dead_code)]
 mod custom_oracle;
 
+use crosscap::pipeline::PluginNames;
 use crosscap::prelude::*;
 use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::dimension::PrincipalComponents;
@@ -330,9 +331,9 @@ fn the_report_names_what_ran() {
     assert_eq!(names.estimator.as_deref(), Some("pca"));
 }
 
-/// An estimator that leaves no point out, and a model with the tolerances of [`parameters`].
-fn of_the_guide() -> (TrimmedComponents, AlternatingPlanes) {
-    let Parameters { dt, dp, ep, .. } = parameters();
+/// An estimator that leaves no point out, and a model with the tolerances of `parameters`.
+fn of_the_guide(parameters: &Parameters) -> (TrimmedComponents, AlternatingPlanes) {
+    let &Parameters { dt, dp, ep, .. } = parameters;
     (
         TrimmedComponents { dt, trim: 0.0 },
         AlternatingPlanes { dp, ep },
@@ -356,7 +357,67 @@ fn plug_ins_of_the_guide_pass_the_kit() {
         (StraightLine(cloud.clone()), SortedAxis::new(cloud.clone()))
     })
     .unwrap();
-    let (estimator, model) = of_the_guide();
+    let (estimator, model) = of_the_guide(&parameters());
     laws::estimator(&settings, &estimator).unwrap();
     laws::model(&settings, &model, &Instances::new(&instances::two_planes)).unwrap();
+}
+
+/// The same four together, over two spheres in a box that they do not reach around.
+fn made_of_the_guide(cloud: &PointCloud<f64>, parameters: Parameters) -> Result<Pipeline, Error> {
+    let (estimator, model) = of_the_guide(&parameters);
+    let metric = PeriodicBox {
+        cloud: cloud.clone(),
+        side: 10.0,
+    };
+    Ok(Pipeline::new(parameters)?
+        .analysis_metric(Box::new(metric))
+        .oracle(Box::new(SortedAxis::new(cloud.clone())))
+        .estimator(Box::new(estimator))
+        .models(vec![Box::new(model)]))
+}
+
+#[test]
+fn plug_ins_of_the_guide_run_in_pipeline_and_comparison_and_both_name_them() {
+    // The model fits planes: in a ball of 0.25 the spheres leave theirs by 0.03.
+    let surface = SampleSurface::find("two_spheres").unwrap();
+    let cloud = surface.sample(&Sampling::new(11_000, 2)).unwrap().points;
+    let lengths = Parameters {
+        dp: 0.04,
+        ep: 0.04,
+        ..Parameters::new(0.25, 0.15)
+    };
+    let named = |names: &PluginNames| {
+        let three = [&names.metric, &names.oracle, &names.chart_metric];
+        assert_eq!(three, ["periodic", "sorted-axis", "periodic"]);
+        assert_eq!(names.estimator.as_deref(), Some("trimmed-pca"));
+    };
+
+    let mut pipeline = made_of_the_guide(&cloud, lengths.clone()).unwrap();
+    let outcome = pipeline.reconstruct(&cloud).unwrap();
+    assert!(outcome.is_verified(), "{}", outcome.certificate);
+    assert_eq!(outcome.homology.betti_rational, [1, 0, 3]);
+    named(&outcome.report.plugins);
+    let [model] = &outcome.report.models[..] else {
+        panic!("{:?}", outcome.report.models);
+    };
+    assert_eq!(model.name, "alternating-planes");
+    assert!(model.won > 0, "{model:?}");
+
+    let contenders = [Contender::pipeline("of the guide", made_of_the_guide)];
+    let charts = 3.0 * lengths.dl;
+    let comparison = Comparison {
+        analysis_eps: Some(lengths.eps),
+        dp: Some(lengths.dp),
+        ep: Some(lengths.ep),
+        betti: Some([1, 0, 3]),
+        ..Comparison::new([charts])
+    };
+    let runs = compare(&cloud, &lengths, &contenders, &comparison, &|| ()).unwrap();
+    let [run] = &runs[..] else {
+        panic!("{runs:?}");
+    };
+    assert!(run.works(), "{run:?}");
+    assert_eq!(run.metric, "of the guide");
+    named(run.plugins.as_ref().unwrap());
+    assert_eq!(run.models, ["alternating-planes"]);
 }

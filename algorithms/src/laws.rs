@@ -70,7 +70,6 @@ pub fn producer<S: Scalar>(
     };
     let make = |extra: &[Row]| {
         let checked = producer.waist(extra).and_then(|waist| {
-            waist.waist.check()?;
             waist.check("the producer", points)?;
             Ok(waist)
         });
@@ -221,20 +220,11 @@ mod tests {
                 _ => rows.extend(extra),
             }
             let members: Vec<Landmark> = (0..rows.len()).map(Landmark::new).collect();
-            let near = CellNeighborhood {
-                center: members[0],
-                members,
-            };
-            let waist = StratifiedLandmarks {
-                strata: Table::filled(rows.len(), 2),
-                curve_edges: vec![],
-                distances: SparseDistances::within(
-                    rows.len(),
-                    std::slice::from_ref(&near),
-                    |a, b| (a.index() + b.index()) as f64,
-                )?,
-                neighborhoods: vec![near],
-            };
+            let near = vec![CellNeighborhood::new(members[0], members)];
+            let apart = |a: Landmark, b: Landmark| (a.index() + b.index()) as f64;
+            let distances = SparseDistances::within(rows.len(), &near, apart)?;
+            let strata = Table::filled(rows.len(), 2);
+            let waist = StratifiedLandmarks::new(strata, vec![], near, distances)?;
             Ok(Stratification::new(waist, rows.into()))
         }
 

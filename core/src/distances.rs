@@ -120,7 +120,7 @@ impl<S: Scalar> SparseDistances<S> {
         // Pairs are symmetric: row b has the rows behind it in the order in which they ask for theirs.
         let mut asked: Table<Landmark, usize> = Table::filled(count, 0);
         for a in seen.ids() {
-            let members = |k: &u32| &neighborhoods[*k as usize].members;
+            let members = |k: &u32| neighborhoods[*k as usize].members();
             let holding = holders.at(a);
             let most = holding.iter().map(|k| members(k).len()).sum();
             row.resize(row.len().max(most), a);
@@ -175,7 +175,7 @@ struct Holders {
 impl Holders {
     fn of(count: usize, neighborhoods: &[CellNeighborhood]) -> Result<Self, Error> {
         let mut starts = vec![0usize; count + 1];
-        for &m in neighborhoods.iter().flat_map(|x| &x.members) {
+        for &m in neighborhoods.iter().flat_map(|x| x.members()) {
             if m.index() >= count {
                 return Err(Error::Index {
                     what: "landmark",
@@ -191,7 +191,7 @@ impl Holders {
         let mut next = starts.clone();
         let mut holding = vec![0u32; starts[count]];
         for (k, near) in (0..).zip(neighborhoods) {
-            for &m in &near.members {
+            for &m in near.members() {
                 holding[next[m.index()]] = k;
                 next[m.index()] += 1;
             }

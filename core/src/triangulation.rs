@@ -85,13 +85,13 @@ impl Triangulation {
                 detail,
             })
         };
-        let (complex, count) = (&self.complex, waist.strata.len());
+        let (complex, count) = (&self.complex, waist.strata().len());
         if complex.vertices != count {
             let law = "answer: the complex is on the landmarks";
             let detail = format!("{} vertices for {count} landmarks", complex.vertices);
             return broken(law, Landmark::default(), detail);
         }
-        let mut told = [&complex.curve_edges, &waist.curve_edges].map(|edges| {
+        let mut told = [&complex.curve_edges[..], waist.curve_edges()].map(|edges| {
             let mut sorted: Vec<_> = edges.iter().map(|e| (e.ends, e.cells)).collect();
             sorted.sort_unstable();
             sorted.into_iter()
@@ -148,8 +148,8 @@ struct Homes {
 
 impl Homes {
     fn of<S: Scalar>(waist: &StratifiedLandmarks<S>) -> Self {
-        let mut starts = vec![0u32; waist.strata.len() + 1];
-        let members = || waist.neighborhoods.iter().map(|near| &near.members);
+        let mut starts = vec![0u32; waist.strata().len() + 1];
+        let members = || waist.neighborhoods().iter().map(|near| near.members());
         for &m in members().flatten() {
             starts[m.index() + 1] += 1;
         }
@@ -157,7 +157,7 @@ impl Homes {
             starts[k] += starts[k - 1];
         }
         let mut free = starts.clone();
-        let mut list = vec![0u32; members().map(Vec::len).sum()];
+        let mut list = vec![0u32; members().map(<[_]>::len).sum()];
         for (home, members) in (0..).zip(members()) {
             for &m in members {
                 list[free[m.index()] as usize] = home;

@@ -9,33 +9,80 @@ use serde::{Deserialize, Serialize};
 /// Stratified landmark neighborhoods with sparse distances: all that a triangulator knows.
 ///
 /// # Invariants
-/// Landmarks are below `strata.len()`; the distance of every two members of a neighborhood is kept;
-/// ends of curve edges are landmarks of stratum dimension 0 or 1. [`StratifiedLandmarks::check`]
-/// tells.
+/// There is a distance entry for every landmark, and none is on a stratum above dimension 2; ends of curve edges are landmarks of
+/// stratum dimension 0 or 1; members of a neighborhood are landmarks, each once, and the distance of every two of them is kept.
 ///
-/// A waist that is read from a file is checked on the way.
+/// There is no waist without them: [`StratifiedLandmarks::new`] checks, nothing changes a waist that is made, and one that
+/// is read from a file is checked on the way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(
     try_from = "Unchecked<S>",
     bound(deserialize = "S: Scalar + Deserialize<'de>")
 )]
 pub struct StratifiedLandmarks<S> {
-    /// For each landmark the dimension of its stratum: 0, 1 or 2.
-    pub strata: Table<Landmark, u8>,
-    /// The chains: edges along the curves.
-    pub curve_edges: Vec<CurveEdge>,
-    /// Neighborhoods, one for each landmark and cell.
-    pub neighborhoods: Vec<CellNeighborhood>,
-    /// Distances within the neighborhoods.
-    pub distances: SparseDistances<S>,
+    strata: Table<Landmark, u8>,
+    curve_edges: Vec<CurveEdge>,
+    neighborhoods: Vec<CellNeighborhood>,
+    distances: SparseDistances<S>,
 }
 
 impl<S: Scalar> StratifiedLandmarks<S> {
-    /// Checks the invariants.
+    /// A waist of landmarks on strata of these dimensions, 0, 1 or 2, with chains along the curves, a neighborhood for each landmark
+    /// and cell, and the distances within them.
+    ///
+    /// O(k) for every neighborhood, k the distances that its members have.
     ///
     /// # Errors
-    /// [`Error::Index`] or [`Error::Shape`] for the first one that does not hold.
-    pub fn check(&self) -> Result<(), Error> {
+    /// [`Error::Index`] or [`Error::Shape`] for the first invariant that does not hold.
+    ///
+    /// ```
+    /// use crosscap_core::{CellNeighborhood, Landmark, SparseDistances, StratifiedLandmarks};
+    /// let corners = [0, 1, 2].map(Landmark::new);
+    /// let triangle = vec![CellNeighborhood::new(corners[0], corners)];
+    /// let even = SparseDistances::within(3, &triangle, |_, _| 1.0)?;
+    /// let with = |distances| StratifiedLandmarks::new(vec![2; 3].into(), vec![], triangle.clone(), distances);
+    /// assert_eq!(with(even)?.strata().len(), 3);
+    /// let error = with(SparseDistances::new(3, [(corners[0], corners[1], 1.0)])?).unwrap_err();
+    /// assert!(error.to_string().contains("no distance between landmarks 2 and 0"));
+    /// # Ok::<(), crosscap_core::Error>(())
+    /// ```
+    pub fn new(
+        strata: Table<Landmark, u8>,
+        curve_edges: Vec<CurveEdge>,
+        neighborhoods: Vec<CellNeighborhood>,
+        distances: SparseDistances<S>,
+    ) -> Result<Self, Error> {
+        let waist = Self {
+            strata,
+            curve_edges,
+            neighborhoods,
+            distances,
+        };
+        waist.check()?;
+        Ok(waist)
+    }
+
+    /// For each landmark the dimension of its stratum: 0, 1 or 2.
+    pub fn strata(&self) -> &Table<Landmark, u8> {
+        &self.strata
+    }
+
+    /// The chains: edges along the curves.
+    pub fn curve_edges(&self) -> &[CurveEdge] {
+        &self.curve_edges
+    }
+
+    /// Neighborhoods, one for each landmark and cell.
+    pub fn neighborhoods(&self) -> &[CellNeighborhood] {
+        &self.neighborhoods
+    }
+
+    /// Distances within the neighborhoods.
+    pub fn distances(&self) -> &SparseDistances<S> {
+        &self.distances
+    }
+
+    fn check(&self) -> Result<(), Error> {
         let count = self.strata.len();
         if self.distances.len() != count {
             return Err(Error::Shape {
@@ -53,17 +100,7 @@ impl<S: Scalar> StratifiedLandmarks<S> {
         // The neighborhood that a landmark was in last, and its position there.
         let mut round: Table<Landmark, u64> = Table::filled(count, u64::MAX);
         for (k, near) in (0_u64..).zip(&self.neighborhoods) {
-            if near.members.first() != Some(&near.center) {
-                return Err(Error::Shape {
-                    found: format!(
-                        "a neighborhood of {} that starts with {:?}",
-                        near.center,
-                        near.members.first().map(|m| m.index())
-                    ),
-                    expected: "the center first".into(),
-                });
-            }
-            let members = near.members.iter();
+            let members = near.members().iter();
             members.copied().try_for_each(|m| self.in_range(m))?;
             self.check_distances(near, k << 32, &mut round)?;
         }
@@ -99,19 +136,26 @@ impl<S: Scalar> StratifiedLandmarks<S> {
         Ok(())
     }
 
-    /// Whether the distances of all members are kept. `first` and what follows it, one for each member, are numbers that
-    /// `round` has had for none.
+    /// Whether every member is there once, and the distances of all are kept. `first` and what follows it, one for each member,
+    /// are numbers that `round` has had for none.
     fn check_distances(
         &self,
         near: &CellNeighborhood,
         first: u64,
         round: &mut Table<Landmark, u64>,
     ) -> Result<(), Error> {
-        for (i, &m) in (0_u64..).zip(&near.members) {
+        for (i, &m) in (0_u64..).zip(near.members()) {
+            // Counted from `first` on, and so large for whatever was there before.
+            if round[m].wrapping_sub(first) < i {
+                return Err(Error::Shape {
+                    found: format!("landmark {m} twice near landmark {}", near.center()),
+                    expected: "every member once".into(),
+                });
+            }
             round[m] = first + i;
         }
         // Every member's row is gone through once, rather than searched for every other.
-        for (i, &a) in near.members.iter().enumerate() {
+        for (i, &a) in near.members().iter().enumerate() {
             let before = |b: Landmark| round[b].wrapping_sub(first) < i as u64;
             let kept: usize = (self.distances.row(a))
                 .map(|x| usize::from(before(x.0)))
@@ -119,11 +163,11 @@ impl<S: Scalar> StratifiedLandmarks<S> {
             if kept == i {
                 continue;
             }
-            for &b in &near.members[..i] {
+            for &b in &near.members()[..i] {
                 if self.distances.get(a, b).is_none() {
                     return Err(Error::Shape {
                         found: format!("no distance between landmarks {a} and {b}"),
-                        expected: format!("one, as both are near landmark {}", near.center),
+                        expected: format!("one, as both are near landmark {}", near.center()),
                     });
                 }
             }
@@ -146,14 +190,12 @@ impl<S: Scalar> TryFrom<Unchecked<S>> for StratifiedLandmarks<S> {
     type Error = Error;
 
     fn try_from(file: Unchecked<S>) -> Result<Self, Error> {
-        let waist = Self {
-            strata: file.strata,
-            curve_edges: file.curve_edges,
-            neighborhoods: file.neighborhoods,
-            distances: file.distances,
-        };
-        waist.check()?;
-        Ok(waist)
+        Self::new(
+            file.strata,
+            file.curve_edges,
+            file.neighborhoods,
+            file.distances,
+        )
     }
 }
 
@@ -164,20 +206,15 @@ mod tests {
 
     /// Two triangles on an edge of a curve.
     fn waist() -> StratifiedLandmarks<f64> {
-        let around = |center: u32, others: [u32; 2]| CellNeighborhood {
-            center: center.into(),
-            members: [center, others[0], others[1]].map(Landmark::from).to_vec(),
+        let around = |center: u32| {
+            let others = [0, 1].map(Landmark::new);
+            CellNeighborhood::new(center.into(), others)
         };
-        let neighborhoods = vec![around(2, [0, 1]), around(3, [0, 1])];
-        StratifiedLandmarks {
-            strata: vec![1, 1, 2, 2].into(),
-            curve_edges: vec![CurveEdge::new(0, 1, 2)],
-            distances: SparseDistances::within(4, &neighborhoods, |a, b| {
-                (a.index() + b.index()) as f64
-            })
-            .unwrap(),
-            neighborhoods,
-        }
+        let neighborhoods = vec![around(2), around(3)];
+        let apart = |a: Landmark, b: Landmark| (a.index() + b.index()) as f64;
+        let distances = SparseDistances::within(4, &neighborhoods, apart).unwrap();
+        let (strata, edges) = (vec![1, 1, 2, 2].into(), vec![CurveEdge::new(0, 1, 2)]);
+        StratifiedLandmarks::new(strata, edges, neighborhoods, distances).unwrap()
     }
 
     #[test]
@@ -212,6 +249,10 @@ mod tests {
         says(
             |f| f["neighborhoods"][0]["members"][1] = json!(3),
             "no distance",
+        );
+        says(
+            |f| f["neighborhoods"][0]["members"][1] = json!(1),
+            "landmark 1 twice near landmark 2",
         );
         says(
             |f| f["neighborhoods"][0]["center"] = json!(1),

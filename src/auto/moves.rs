@@ -141,6 +141,23 @@ pub(super) fn opened(
     (next.dl >= CLOSEST * density.dense && next.check().is_ok()).then_some(next)
 }
 
+/// Factor on both lengths where points scatter.
+const WIDER: f64 = 1.2;
+/// Neighborhoods that scatter asks for at least, in standard deviations. Two spheres, a torus through one and a double bubble passed at 10
+/// to 20 of them where 4 to 8 failed.
+const LEAST_WIDE: f64 = 10.0;
+/// Widest neighborhoods that scatter asks for, in standard deviations: beyond, what is left of it after the points were moved is
+/// not what fails.
+const SCATTER: f64 = 25.0;
+
+/// Both lengths larger, where points scatter by `noise` across the surface: what moving them onto fits leaves of it is less in a larger
+/// neighborhood. No other move makes the mesh coarser, as a coarser mesh passes by seeing less; here there is less to be seen.
+pub(super) fn widened(from: &Parameters, pinned: &Pinned, noise: f64) -> Option<Parameters> {
+    let factor = (LEAST_WIDE * noise / from.eps).max(WIDER);
+    let next = scaled(from, pinned, factor, factor)?;
+    (next.eps <= SCATTER * noise && next.check().is_ok()).then_some(next)
+}
+
 /// Whether every point may be taken as one of a surface, with distances along it.
 fn is_free(pinned: &Pinned) -> bool {
     pinned.metric.is_none()

@@ -55,6 +55,12 @@ impl<'a> Prepared<'a> {
         }
     }
 
+    /// Standard deviation of the points across the surface, unit of the data, where it is so large that they were moved.
+    pub(super) fn noise(&self) -> Option<f64> {
+        let summary = self.better.as_ref()?.summary.as_ref()?;
+        summary.moved.and(summary.noise)
+    }
+
     /// One reconstruction by the pipeline that `make` puts together; rows are those of the input.
     ///
     /// Where all that is wrong with the mesh is a few points [alone](alone::rows) far from it, they are outliers that nothing told before

@@ -95,6 +95,15 @@ impl Symptom {
             && (certificate.violations()).all(|v| at_ends(v) || v.kind == BridgedGap)
     }
 
+    /// Whether scatter across the surface can be why, which is less in a larger neighborhood.
+    pub(super) fn is_of_scatter(self) -> bool {
+        use Symptom::*;
+        matches!(
+            self,
+            Unexplained | Curves | Folds | Ends | Open | Behind | Cover
+        )
+    }
+
     /// What is worth trying, in order. Of 756 clouds around one feature, 500 to 1500 points each, smaller neighborhoods passed at
     /// 71 of 219 attempts, one closed surface at 36 of 260, charts that unfold at 5 of 114, other landmarks by themselves at 17 of
     /// 60 the first time and never again.

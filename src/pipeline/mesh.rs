@@ -123,7 +123,7 @@ pub(super) fn failures(
         .iter()
         .map(|open| {
             let landmark = open.landmark;
-            let on_curve = stratification.waist.strata[landmark] < 2;
+            let on_curve = stratification.waist.strata()[landmark] < 2;
             Error::Triangulation {
                 reason: if on_curve {
                     "a cell at a curve could not be filled".into()

@@ -292,7 +292,7 @@ impl Pipeline {
     /// Triangulates a waist that came from elsewhere: measured distances, another program.
     ///
     /// # Errors
-    /// Those of [`StratifiedLandmarks::check`] and [`Triangulator::triangulate`].
+    /// Those of [`Triangulator::triangulate`]; [`Error::Law`] for what a triangulator that was plugged in breaks.
     pub fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
         self.parts.triangulated(waist, self.parts.chart.as_ref())
     }
@@ -329,10 +329,6 @@ impl Parts {
     ) -> Result<Triangulation, Error> {
         let front = self.front(chart);
         let triangulator = self.triangulator(&front);
-        if self.triangulator.is_some() {
-            // The usual one looks for itself.
-            waist.check()?;
-        }
         let found = triangulator.triangulate(waist)?;
         found.check(waist, triangulator.name())?;
         Ok(found)

@@ -10,7 +10,7 @@ use crosscap_algorithms::pieces::{Pieces, PiecesError};
 use crosscap_algorithms::stratify::{ModelCounts, StratifyCounts, Tuning};
 use crosscap_backends::geodesic::GraphReport;
 use crosscap_core::{Error, Mesh, TriangulationCounts};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What became of distances that were the only input.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,7 +26,7 @@ pub struct GivenSpace {
 }
 
 /// Names of the plug-ins of a reconstruction, as they call themselves.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct PluginNames {
     /// The metric of the analysis.

@@ -99,7 +99,7 @@ impl Maker for Tiled<'_> {
             None => NearCurves::default(),
         };
         neighborhoods.extend(of_curves.in_cells);
-        neighborhoods.sort_by_key(|one| one.center);
+        neighborhoods.sort_by_key(CellNeighborhood::center);
         neighborhoods.extend(of_curves.at_curves);
         let place = |k: Landmark| {
             let moved = self.moved(landmarks.rows()[k.index()]);
@@ -108,15 +108,12 @@ impl Maker for Tiled<'_> {
         let distances = SparseDistances::within(landmarks.len(), &neighborhoods, |a, b| {
             squared_distance(place(a), place(b)).sqrt()
         })?;
-        let waist = StratifiedLandmarks {
-            strata: match self.curves {
-                Some(curves) => curves.dimensions(landmarks.len()),
-                None => Table::filled(landmarks.len(), 2),
-            },
-            curve_edges: self.curves.map_or(&[][..], Curves::chains).to_vec(),
-            neighborhoods,
-            distances,
+        let strata = match self.curves {
+            Some(curves) => curves.dimensions(landmarks.len()),
+            None => Table::filled(landmarks.len(), 2),
         };
+        let chains = self.curves.map_or(&[][..], Curves::chains).to_vec();
+        let waist = StratifiedLandmarks::new(strata, chains, neighborhoods, distances)?;
         let rows = landmarks.rows().iter().map(|row| Row::new(row.index()));
         let mut found = Stratification::new(waist, rows.collect());
         found.counts.cut_edges = of_curves.cut_edges;
@@ -275,10 +272,10 @@ impl Tiled<'_> {
                 continue;
             };
             for (one, radius) in own.into_iter().zip(radii) {
-                let place = landmarks.place(one.center.index());
+                let place = landmarks.place(one.center().index());
                 let curves = self.curves;
                 if curves.is_some_and(|curves| curves.are_near(place, Some(radius))) {
-                    near[one.center] = true;
+                    near[one.center()] = true;
                 } else {
                     found.push(one);
                 }

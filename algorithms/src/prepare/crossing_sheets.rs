@@ -9,10 +9,12 @@ use nalgebra::Vector3;
 
 /// Rounds of fitting both sheets and sharing the points out anew.
 const ROUNDS: usize = 4;
+
 /// Two quadratic patches in the three leading principal coordinates of a neighborhood.
 pub(super) struct CrossingSheets {
     frame: PrincipalFrame,
     patches: [QuadraticPatch; 2],
+    radius: f64,
 }
 
 /// Which patch is nearer, and how far.
@@ -35,10 +37,12 @@ impl CrossingSheets {
         let mut near = near.to_vec();
         near.sort_unstable();
         let rows = || std::iter::once(row).chain(near.iter().map(|x| x.index() as usize));
-        let frame = PrincipalFrame::of(cloud, rows());
+        let mut frame = PrincipalFrame::of(cloud, rows());
         if frame.rank() < 3 {
             return None;
         }
+        // Many pairs are kept, and of all N axes only these are used.
+        frame.axes.truncate(3 * cloud.dimension());
         let radius = near.last()?.square().sqrt();
         let mut local = Vec::with_capacity(3);
         let points: Vec<Vector3<f64>> = rows()
@@ -86,8 +90,16 @@ impl CrossingSheets {
         let share = second as f64 / points.len() as f64;
         let even = (tuning.sheet_share..=1.0 - tuning.sheet_share).contains(&share);
         let scatter = (sum / points.len() as f64).sqrt();
-        (even && sum <= tuning.gain * tuning.gain * alone && scatter <= limit)
-            .then_some(Self { frame, patches })
+        (even && sum <= tuning.gain * tuning.gain * alone && scatter <= limit).then_some(Self {
+            frame,
+            patches,
+            radius,
+        })
+    }
+
+    /// Radius of the neighborhood that they were laid through.
+    pub(super) fn radius(&self) -> f64 {
+        self.radius
     }
 
     /// `x` moved onto the nearer sheet.

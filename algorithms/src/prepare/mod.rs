@@ -13,6 +13,7 @@
 //!
 //! Lengths here are told in units of the *local spacing*, the one length that a cloud brings with it.
 
+mod crossing_fits;
 mod crossing_sheets;
 mod noise;
 mod off_sheet;

@@ -29,7 +29,7 @@ pub(super) fn within_charts<S: Scalar>(
             })
         }
         ChartSpace::Metric(space) => {
-            let pairs = pairs(neighborhoods.iter().map(|x| &x.members[..]));
+            let pairs = pairs(neighborhoods.iter().map(|x| x.members()));
             let mut lengths = lengths(analyzer.execute, space.metric(), rows, &pairs)?;
             add_moves(analyzer, strata, rows, &pairs, &mut lengths);
             let entries = pairs.iter().zip(&lengths).map(|(&(a, b), &d)| (a, b, d));

@@ -50,16 +50,20 @@ pub struct Stratification<S> {
 impl<S: Scalar> Stratification<S> {
     /// A waist and the rows that its landmarks stand for, counted.
     pub fn new(waist: StratifiedLandmarks<S>, rows: Table<Landmark, Row>) -> Self {
-        let members: usize = waist.neighborhoods.iter().map(|x| x.members.len()).sum();
-        let of = |least: u8| waist.strata.iter().filter(|&&d| d <= least).count();
+        let members: usize = waist
+            .neighborhoods()
+            .iter()
+            .map(|x| x.members().len())
+            .sum();
+        let of = |least: u8| waist.strata().iter().filter(|&&d| d <= least).count();
         Self {
             counts: StratifyCounts {
                 landmarks: rows.len(),
                 curve_landmarks: of(1),
                 corners: of(0),
-                curve_edges: waist.curve_edges.len(),
+                curve_edges: waist.curve_edges().len(),
                 cut_edges: 0,
-                mean_members: members as f64 / waist.neighborhoods.len().max(1) as f64,
+                mean_members: members as f64 / waist.neighborhoods().len().max(1) as f64,
             },
             waist,
             rows,
@@ -68,8 +72,7 @@ impl<S: Scalar> Stratification<S> {
     }
 
     /// Whether this can be what a producer of waists named `plugin` makes of so many `points`: every landmark stands for a
-    /// row of its own, and strata of dimension 0 are at landmarks. What the waist itself must satisfy,
-    /// [`StratifiedLandmarks::check`] says.
+    /// row of its own, and strata of dimension 0 are at landmarks. What the waist itself must satisfy it does, or there were none.
     ///
     /// # Errors
     /// [`Error::Law`] for the first landmark of which it is not true.
@@ -82,7 +85,7 @@ impl<S: Scalar> Stratification<S> {
                 detail,
             })
         };
-        let count = self.waist.strata.len();
+        let count = self.waist.strata().len();
         if self.rows.len() != count {
             let detail = format!("{} rows for {count} landmarks", self.rows.len());
             return broken(Landmark::default(), detail);
@@ -96,7 +99,7 @@ impl<S: Scalar> Stratification<S> {
             }
         }
         let stray = self.points.iter().find(|p| {
-            let stratum = self.waist.strata.get(p.landmark);
+            let stratum = self.waist.strata().get(p.landmark);
             stratum != Some(&0)
         });
         match stray {

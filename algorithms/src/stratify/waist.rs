@@ -227,12 +227,8 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
             &rows,
             &neighborhoods,
         )?;
-        let waist = StratifiedLandmarks {
-            strata,
-            curve_edges: self.skeleton.edges().to_vec(),
-            neighborhoods,
-            distances,
-        };
+        let edges = self.skeleton.edges().to_vec();
+        let waist = StratifiedLandmarks::new(strata, edges, neighborhoods, distances)?;
         let mut out = Stratification::new(waist, rows);
         out.counts.cut_edges = cut_edges;
         out.points = self.points();

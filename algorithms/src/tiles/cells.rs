@@ -72,9 +72,9 @@ pub(super) fn neighborhoods(
         return Err(short);
     }
     let name = |k: Landmark| known[k.index()];
-    let named = found.into_iter().map(|one| CellNeighborhood {
-        center: name(one.center),
-        members: one.members.into_iter().map(name).collect(),
+    let named = found.into_iter().map(|one| {
+        let members = one.members().iter().copied().map(name);
+        CellNeighborhood::new(name(one.center()), members)
     });
     Ok((named.collect(), radii))
 }

@@ -156,15 +156,15 @@ impl<'c> Curves<'c> {
         let (found, radii, cut_edges) = self.cut.neighborhoods_among(&rows, &wanted)?;
         for (one, radius) in found.iter().zip(radii) {
             // The nearest neighbors of what is in a chart are within a separation of it, or were asked for.
-            let (row, moved) = (rows[one.center], self.cut.moved(rows[one.center]));
+            let (row, moved) = (rows[one.center()], self.cut.moved(rows[one.center()]));
             self.excerpt.needs(row, radius + self.dl + moved);
         }
         let name = |k: Landmark| known[k.index()];
-        let named = found.into_iter().map(|one| CellNeighborhood {
-            center: name(one.center),
-            members: one.members.into_iter().map(name).collect(),
+        let named = found.into_iter().map(|one| {
+            let members = one.members().iter().copied().map(name);
+            CellNeighborhood::new(name(one.center()), members)
         });
-        let (in_cells, at_curves) = named.partition(|one| one.center.index() >= on_curves);
+        let (in_cells, at_curves) = named.partition(|one| one.center().index() >= on_curves);
         Ok(NearCurves {
             in_cells,
             at_curves,

@@ -4,7 +4,7 @@ use crate::landmarks::RandomGreedy;
 use crate::metric::{BruteForceOracle, Euclidean};
 use crate::surfaces::{Random, SampleSurface, Sampling};
 use crate::tuning::CellTuning;
-use crosscap_core::{LandmarkSelector, PointCloud};
+use crosscap_core::{CellNeighborhood, LandmarkSelector, PointCloud};
 use proptest::prelude::*;
 
 /// Points of a square in R^3 with a bump, some of them on a grid and some scattered.
@@ -103,7 +103,7 @@ fn neighborhoods_are_the_same_whatever_the_tiles() {
                     other => panic!("{other:?}"),
                 }
             }
-            all.sort_by_key(|cell| cell.center);
+            all.sort_by_key(CellNeighborhood::center);
             assert_eq!(all.len(), chosen.len());
             all
         };

@@ -30,9 +30,9 @@ impl Triangle {
 impl<'a, S: Scalar> Front<'a, S> {
     /// No triangle yet.
     pub(super) fn new(parts: &'a AdvancingFront<'a>, input: &'a StratifiedLandmarks<S>) -> Self {
-        let count = input.strata.len();
+        let count = input.strata().len();
         let mut curve: Table<Landmark, _> = Table::filled(count, Vec::new());
-        for e in &input.curve_edges {
+        for e in input.curve_edges() {
             let [a, b] = e.landmarks();
             curve[a].push((b, e.cells));
             curve[b].push((a, e.cells));
@@ -103,7 +103,7 @@ impl<'a, S: Scalar> Front<'a, S> {
     /// Whether two landmarks of one curve are few steps apart along it: an edge between them
     /// would cut the corner of the chain. Steps do not run through points (stratum 0).
     pub(super) fn shortcut(&self, a: Landmark, b: Landmark) -> bool {
-        if self.input.strata[a] > 1 || self.input.strata[b] > 1 {
+        if self.input.strata()[a] > 1 || self.input.strata()[b] > 1 {
             return false;
         }
         let mut reached = vec![a];
@@ -112,7 +112,7 @@ impl<'a, S: Scalar> Front<'a, S> {
             let until = reached.len();
             for k in from..until {
                 let v = reached[k];
-                if v != a && self.input.strata[v] == 0 {
+                if v != a && self.input.strata()[v] == 0 {
                     continue;
                 }
                 for &(next, _) in &self.curve[v] {

@@ -11,8 +11,8 @@ impl<S: Scalar> Run<'_, '_, S> {
         if !self.front.parts.repair || self.attempts == 0 {
             return Ok(false);
         }
-        let members: Vec<Landmark> = self.front.input.neighborhoods[k.index()]
-            .members
+        let members: Vec<Landmark> = self.front.input.neighborhoods()[k.index()]
+            .members()
             .iter()
             .copied()
             .filter(|&m| !self.front.dropped[m])
@@ -28,7 +28,7 @@ impl<S: Scalar> Run<'_, '_, S> {
         if !drop {
             return Ok(false);
         }
-        let cell = |u: &Landmark| self.front.input.strata[*u] == 2;
+        let cell = |u: &Landmark| self.front.input.strata()[*u] == 2;
         let droppable: Vec<Landmark> = members
             .iter()
             .copied()
@@ -102,11 +102,11 @@ impl<S: Scalar> Run<'_, '_, S> {
         let mut sorted = members.to_vec();
         sorted.sort_unstable();
         let inside = |c: Landmark| sorted.binary_search(&c).is_ok();
-        let on_curve = self.front.input.strata[v] < 2;
+        let on_curve = self.front.input.strata()[v] < 2;
         let within = |c: Landmark| !on_curve || inside(c);
         self.front.clear(v, within, &mut touched);
         for &m in members.iter().skip(1).take(reach) {
-            if self.front.input.strata[m] == 2 {
+            if self.front.input.strata()[m] == 2 {
                 self.front.clear(m, |_| true, &mut touched);
             } else {
                 self.front.clear(m, inside, &mut touched);

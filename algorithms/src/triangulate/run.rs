@@ -22,16 +22,15 @@ impl<S: Scalar> Triangulator<S> for AdvancingFront<'_> {
     /// undone, so that a site that cannot be triangulated stays where it is.
     ///
     /// # Errors
-    /// Those of [`StratifiedLandmarks::check`] and of the chart; [`Error::Law`], whose point is the landmark, for a chart
+    /// Those of the chart; [`Error::Law`], whose point is the landmark, for a chart
     /// of the wrong size or not finite, a test that is not symmetric, a rank that is NaN or depends on the
     /// order of the ends, or a triangle without area that does not rank last.
     ///
     /// O(L k^2) for L landmarks with k members in a neighborhood, plus the charts.
     fn triangulate(&self, input: &StratifiedLandmarks<S>) -> Result<Triangulation, Error> {
-        input.check()?;
-        let first = input.neighborhoods.first().and_then(|near| {
-            let (&a, &b) = (near.members.first()?, near.members.get(1)?);
-            input.distances.get(a, b)
+        let first = input.neighborhoods().first().and_then(|near| {
+            let (&a, &b) = (near.members().first()?, near.members().get(1)?);
+            input.distances().get(a, b)
         });
         let size = first.map_or(1.0, Scalar::as_f64);
         known_pairs(self.test, if size > 0.0 { size } else { 1.0 })?;
@@ -57,8 +56,8 @@ impl<S: Scalar> Triangulator<S> for AdvancingFront<'_> {
         let mut run = Run::new(&watch, &mut front);
         run.all()?;
         let (counts, incomplete) = (run.counts, std::mem::take(&mut run.incomplete));
-        let count = input.strata.len();
-        let edges: Vec<CurveEdge> = input.curve_edges.clone();
+        let count = input.strata().len();
+        let edges: Vec<CurveEdge> = input.curve_edges().to_vec();
         Ok(Triangulation {
             complex: Complex::new(count, front.standing(), edges)?,
             dropped: (front.dropped.ids().filter(|&v| front.dropped[v])).collect(),
@@ -93,15 +92,15 @@ pub(super) struct Run<'r, 'a, S: Scalar> {
 impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
     fn new(watch: &'r Watch, front: &'r mut Front<'a, S>) -> Self {
         let (input, tuning) = (front.input, front.parts.tuning);
-        let count = input.strata.len();
+        let count = input.strata().len();
         let mut home = Table::filled(count, None);
         let mut sectors: Table<Landmark, Vec<Star>> = Table::filled(count, Vec::new());
-        for (k, near) in input.neighborhoods.iter().enumerate() {
+        for (k, near) in input.neighborhoods().iter().enumerate() {
             let star = Star::new(k);
-            if input.strata[near.center] == 2 {
-                home[near.center] = Some(star);
+            if input.strata()[near.center()] == 2 {
+                home[near.center()] = Some(star);
             } else {
-                sectors[near.center].push(star);
+                sectors[near.center()].push(star);
             }
         }
         Self {
@@ -208,8 +207,8 @@ impl<'r, 'a, S: Scalar> Run<'r, 'a, S> {
         self.counts.visits += 1;
         let input = self.front.input;
         let mut kept = std::mem::take(&mut self.kept);
-        let near = &input.neighborhoods[k.index()];
-        self.watch.enter(near.center);
+        let near = &input.neighborhoods()[k.index()];
+        self.watch.enter(near.center());
         let mut patch = Patch::new(self.front, near, &mut kept)?;
         let closed = patch.close(self.front);
         self.kept = kept;

@@ -48,7 +48,12 @@ impl<'a> Patch<'a> {
         kept: &'a mut Vec<Landmark>,
     ) -> Result<Self, Error> {
         kept.clear();
-        kept.extend(near.members.iter().copied().filter(|&m| !front.dropped[m]));
+        kept.extend(
+            near.members()
+                .iter()
+                .copied()
+                .filter(|&m| !front.dropped[m]),
+        );
         let members: &'a [Landmark] = kept;
         let k = members.len();
         front.locate(members);
@@ -56,7 +61,7 @@ impl<'a> Patch<'a> {
         let mut distances = vec![f64::INFINITY; k * k + 1];
         for (i, &m) in members.iter().enumerate() {
             distances[i * k + i] = 0.0;
-            for (other, d) in front.input.distances.row(m) {
+            for (other, d) in front.input.distances().row(m) {
                 // Those that are not members go to the end: a branch would be guessed wrong too often.
                 let at = front.position(other).map_or(k * k, |j| i * k + j);
                 distances[at] = d.as_f64();
@@ -158,11 +163,11 @@ impl<'a> Patch<'a> {
             .collect();
         ends.sort_unstable();
         ends.dedup();
-        let on_curve = front.input.strata[center] < 2;
+        let on_curve = front.input.strata()[center] < 2;
         if ends.is_empty() {
             // A curve that this cell does not touch asks for nothing; a point inside of it does.
             let lone = front.curve[center].iter().all(|c| c.1 == 0);
-            if on_curve && !(lone && front.input.strata[center] == 0) {
+            if on_curve && !(lone && front.input.strata()[center] == 0) {
                 return None;
             }
             // A fresh star starts from the nearest member that can be joined.

@@ -163,6 +163,11 @@ pub struct EndTuning {
     pub corner_radii: [f64; 2],
     /// How far from a corner its model says where the boundary is: balls of the analysis that reach the corner round it.
     pub corner_reach: f64,
+    /// A boundary breaks off at a point when the middle of its points within the radius is off by more than this; it is 0.5 at the
+    /// end of a straight one, and 0 inside, but for chance.
+    pub breaks_off: f64,
+    /// How far ahead of such a point the boundary is looked for in smaller balls.
+    pub continues: f64,
 }
 
 impl EndTuning {
@@ -181,6 +186,8 @@ impl EndTuning {
         corner_spacing: 0.5,
         corner_radii: [2.0, 2.8],
         corner_reach: 1.5,
+        breaks_off: 0.3,
+        continues: 0.5,
     };
 }
 

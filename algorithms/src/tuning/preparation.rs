@@ -206,10 +206,12 @@ pub struct ProjectionTuning {
     /// Fits reach this many times the noise: the tilt of a fit is known to the noise over its reach and the
     /// root of its points.
     pub reach: f64,
-    /// Fewest points of a fit.
-    pub least_neighbors: usize,
+    /// Fewest points of a fit, where the cloud has enough: 64 leave 0.27 of the noise, 32 leave 0.38.
+    pub usual_neighbors: usize,
     /// Most, as a share of the cloud.
     pub most_share: f64,
+    /// Fewest points of a fit, whatever share of the cloud they are.
+    pub least_neighbors: usize,
     /// Most at all.
     pub most_neighbors: usize,
     /// Noise, in spacings, from which a third round is made.
@@ -224,6 +226,8 @@ pub struct ProjectionTuning {
     pub sheet_share: f64,
     /// Least sine of the angle at which two sheets cross.
     pub sine: f64,
+    /// How far from where it was laid a pair of sheets explains points, in radii of its neighborhood.
+    pub borrowed: f64,
 }
 
 impl ProjectionTuning {
@@ -231,8 +235,9 @@ impl ProjectionTuning {
     pub const MEASURED: Self = Self {
         least_noise: 0.1,
         reach: 5.0,
-        least_neighbors: 32,
+        usual_neighbors: 64,
         most_share: 0.1,
+        least_neighbors: 32,
         most_neighbors: 400,
         loud: 0.7,
         one_sheet: 1.6,
@@ -240,5 +245,6 @@ impl ProjectionTuning {
         gain: 0.55,
         sheet_share: 0.12,
         sine: 0.25,
+        borrowed: 0.6,
     };
 }

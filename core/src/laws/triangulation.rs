@@ -80,26 +80,24 @@ fn sphere(jitter: &[[f64; 3]]) -> StratifiedLandmarks<f64> {
                 let order = apart(center, a).total_cmp(&apart(center, b));
                 order.then(a.cmp(&b))
             });
-            CellNeighborhood { center, members }
+            CellNeighborhood::new(center, members)
         })
         .collect();
-    StratifiedLandmarks {
-        strata: Table::filled(count, 2),
-        curve_edges: Vec::new(),
-        distances: SparseDistances::within(count, &neighborhoods, apart)
-            .expect("members are landmarks"),
-        neighborhoods,
-    }
+    let distances =
+        SparseDistances::within(count, &neighborhoods, apart).expect("members are landmarks");
+    StratifiedLandmarks::new(Table::filled(count, 2), vec![], neighborhoods, distances)
+        .expect("the distances are those of the neighborhoods")
 }
 
 /// The same waist with all distances multiplied by a number.
 fn scaled(waist: &StratifiedLandmarks<f64>, factor: f64) -> StratifiedLandmarks<f64> {
-    let apart = |a, b| factor * waist.distances.get(a, b).unwrap_or(f64::INFINITY);
-    StratifiedLandmarks {
-        distances: SparseDistances::within(waist.strata.len(), &waist.neighborhoods, apart)
-            .expect("members are landmarks"),
-        ..waist.clone()
-    }
+    let apart = |a, b| factor * waist.distances().get(a, b).unwrap_or(f64::INFINITY);
+    let (strata, near) = (waist.strata(), waist.neighborhoods());
+    let distances =
+        SparseDistances::within(strata.len(), near, apart).expect("members are landmarks");
+    let edges = waist.curve_edges().to_vec();
+    StratifiedLandmarks::new(strata.clone(), edges, near.to_vec(), distances)
+        .expect("a waist by other distances is one")
 }
 
 /// Puts a triangulator through its laws, on waists of 12 to 70 landmarks of a round sphere that are spread not quite evenly.
@@ -118,11 +116,11 @@ fn scaled(waist: &StratifiedLandmarks<f64>, factor: f64) -> StratifiedLandmarks<
 /// struct Nothing;
 /// impl Triangulator<f64> for Nothing {
 ///     fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
-///         let count = waist.strata.len();
+///         let count = waist.strata().len();
 ///         Ok(Triangulation {
-///             complex: Complex::new(count, vec![], waist.curve_edges.clone())?,
+///             complex: Complex::new(count, vec![], waist.curve_edges().to_vec())?,
 ///             dropped: vec![],
-///             incomplete: waist.strata.ids().map(|landmark| Incomplete { landmark }).collect(),
+///             incomplete: waist.strata().ids().map(|landmark| Incomplete { landmark }).collect(),
 ///             counts: Default::default(),
 ///         })
 ///     }
@@ -176,7 +174,7 @@ fn closed(waist: &StratifiedLandmarks<f64>, found: &Triangulation) -> Outcome {
     if !(found.dropped.is_empty() && found.incomplete.is_empty()) {
         return Ok(());
     }
-    for landmark in (0..).take(waist.strata.len()) {
+    for landmark in (0..).take(waist.strata().len()) {
         let star = found.complex.triangles.iter();
         let star = star.filter(|t| t.contains(&landmark));
         let sides: Vec<[u32; 2]> = star
@@ -234,19 +232,19 @@ mod tests {
 
     impl Triangulator<f64> for Lazy {
         fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
-            let count = waist.strata.len() as u32;
-            let near = &waist.neighborhoods[0].members;
+            let count = waist.strata().len() as u32;
+            let near = waist.neighborhoods()[0].members();
             let mut corners = [near[0], near[1], near[2]].map(u32::from);
             if self.0 == Fault::Far {
                 corners = [0, 1, count - 1];
             }
             corners.sort_unstable();
-            let long = waist.distances.get(near[0], near[1]) >= Some(1.0);
+            let long = waist.distances().get(near[0], near[1]) >= Some(1.0);
             let none = self.0 == Fault::Length && long;
             let again = self.1.fetch_not(Ordering::Relaxed) && self.0 == Fault::Turns;
             let open: Vec<Landmark> = match self.0 {
                 Fault::Silent => vec![],
-                _ => waist.strata.ids().skip(usize::from(again)).collect(),
+                _ => waist.strata().ids().skip(usize::from(again)).collect(),
             };
             let triangles = if none { vec![] } else { vec![corners] };
             Ok(Triangulation {

@@ -3,7 +3,7 @@
 use super::Progress;
 use crate::auto::attempt::Attempt;
 use crate::auto::density::Density;
-use crate::auto::moves::{Move, opened, other_landmarks};
+use crate::auto::moves::{Move, opened, other_landmarks, widened};
 use crate::auto::needs::RESOLVING;
 use crate::auto::symptoms::Symptom;
 use crate::pipeline::Parameters;
@@ -65,6 +65,12 @@ impl Progress<'_> {
                 && fresh(&next)
             {
                 return Some((next, "landmarks near enough to leave the gaps open"));
+            }
+            if self.symptoms[index].is_some_and(Symptom::is_of_scatter)
+                && let Some(noise) = self.prepared.noise()
+                && let Some(next) = widened(from, pinned, noise).filter(fresh)
+            {
+                return Some((next, "larger neighborhoods, as the points scatter"));
             }
             let moves = self.symptoms[index].map_or(&[][..], Symptom::moves);
             moves.iter().find_map(|step| {

@@ -3,6 +3,7 @@
 mod about_end;
 mod analyzer;
 mod competition;
+mod continued;
 mod dimension;
 mod explain;
 mod fitter;

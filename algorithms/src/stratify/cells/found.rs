@@ -32,9 +32,7 @@ impl Found {
     /// Takes the neighborhood of a landmark.
     pub(super) fn take(&mut self, center: Landmark, others: Members) {
         self.radii.push(others.radius);
-        self.neighborhoods.push(CellNeighborhood {
-            center,
-            members: std::iter::once(center).chain(others.landmarks).collect(),
-        });
+        self.neighborhoods
+            .push(CellNeighborhood::new(center, others.landmarks));
     }
 }

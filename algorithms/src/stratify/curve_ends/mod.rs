@@ -61,6 +61,9 @@ pub(super) fn explain<S: Scalar>(
     for answer in answers {
         enter::enter(strata, fitter.cloud, answer, tuning);
     }
+    if !strata.regions().is_empty() {
+        fitter.continue_boundaries(analysis, strata);
+    }
     fitter.faults.none()
 }
 

@@ -66,7 +66,7 @@ impl EndRegion {
     }
 
     /// Its rows.
-    pub(super) fn rows(&self) -> impl Iterator<Item = Row> {
+    pub(in crate::stratify) fn rows(&self) -> impl Iterator<Item = Row> {
         self.labels.iter().map(|x| x.0)
     }
 

@@ -79,21 +79,20 @@ fn crossing_planes_are_divided_at_their_line() {
             "{x:?}"
         );
     }
-    let on_curve = |k: Landmark| out.waist.strata[k] == 1;
+    let on_curve = |k: Landmark| out.waist.strata()[k] == 1;
     let mut divided = 0;
-    for near in &out.waist.neighborhoods {
-        assert!(!on_curve(near.center));
-        if analysis.dimensions[out.rows[near.center]] != 3 {
+    for near in out.waist.neighborhoods() {
+        assert!(!on_curve(near.center()));
+        if analysis.dimensions[out.rows[near.center()]] != 3 {
             continue;
         }
         divided += 1;
         let sheet = |k: Landmark| cloud.point(out.rows[k].index())[2] == 0.0;
-        for &m in &near.members {
-            assert!(on_curve(m) || sheet(m) == sheet(near.center));
+        for &m in near.members() {
+            assert!(on_curve(m) || sheet(m) == sheet(near.center()));
         }
     }
     assert!(divided > 10, "{divided}");
-    out.waist.check().unwrap();
 }
 
 #[test]
@@ -136,12 +135,12 @@ fn a_rejected_fit_leaves_the_neighborhood_whole() {
     assert!(analysis.sites.iter().all(|s| s.kind().is_none()));
     assert!(!analysis.unexplained.is_empty());
     assert_eq!(analysis.unexplained.len(), analysis.candidates());
-    for near in &out.waist.neighborhoods {
+    for near in out.waist.neighborhoods() {
         let ball = out.rows.iter().filter(|&&r| {
-            let center = out.rows[near.center];
+            let center = out.rows[near.center()];
             cloud.squared_distance(r.index(), center.index()).sqrt() < 0.5
         });
-        assert_eq!(near.members.len(), ball.count());
+        assert_eq!(near.members().len(), ball.count());
     }
 }
 
@@ -170,9 +169,9 @@ fn a_given_boundary_becomes_one_ring_of_one_cell() {
     );
     let ring = out.counts.curve_landmarks;
     assert!(ring >= 10);
-    assert_eq!(out.waist.curve_edges.len(), ring);
+    assert_eq!(out.waist.curve_edges().len(), ring);
     for k in 0..ring as u32 {
-        let edges = out.waist.curve_edges.iter();
+        let edges = out.waist.curve_edges().iter();
         let own = edges.filter(|e| e.ends.contains(&k) && e.cells == 1);
         assert_eq!(own.count(), 2, "landmark {k}");
     }

@@ -222,17 +222,9 @@ impl<S: Scalar> WaistProducer<S> for PublishedCut<'_, '_, S> {
         let mut strata = Table::filled(rows.len(), 2);
         strata.as_mut_slice()[..on_curves].fill(1);
         let neighborhoods: Vec<CellNeighborhood> = (all.into_iter().skip(on_curves))
-            .map(|members| CellNeighborhood {
-                center: members[0],
-                members,
-            })
+            .map(|members| CellNeighborhood::new(members[0], members))
             .collect();
-        let waist = StratifiedLandmarks {
-            strata,
-            curve_edges,
-            neighborhoods,
-            distances,
-        };
+        let waist = StratifiedLandmarks::new(strata, curve_edges, neighborhoods, distances)?;
         Ok(Stratification::new(waist, rows))
     }
 }
