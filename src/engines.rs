@@ -12,9 +12,6 @@ use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric, GraphReport};
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{Error, PointCloud};
 
-/// Points that a tangent plane is fitted to, for the lifted metric.
-const TANGENT_POINTS: usize = 32;
-
 /// Lengths measured in the spacing of the points.
 struct Conformal {
     metric: GeodesicMetric<f64>,
@@ -81,11 +78,12 @@ impl Engines {
         spaces: &Spaces,
         eps: f64,
         positions: &PointCloud<f64>,
+        tuning: &TangentTuning,
         threads: &Threads,
     ) -> Result<Self, Error> {
         let flat = EuclideanOracle::new(positions.clone())?;
         let lifted = if spaces.uses(MetricName::Lifted) {
-            let count = TANGENT_POINTS.min(positions.len().saturating_sub(1));
+            let count = tuning.lifted.min(positions.len().saturating_sub(1));
             let bases = tangent_planes(positions, &flat, count, threads)?;
             let weight = spaces.lift.unwrap_or(2.0 * eps);
             let lifted = Lifted::new(positions.clone(), 2, bases, weight)?.coordinates()?;
@@ -99,7 +97,7 @@ impl Engines {
         };
         let sheets = if spaces.sheets && spaces.uses(MetricName::Geodesic) {
             let cloud = euclidean.cloud();
-            let field = TangentField::new(cloud, &euclidean, &TangentTuning::MEASURED, threads)?;
+            let field = TangentField::new(cloud, &euclidean, tuning, threads)?;
             Some(field)
         } else {
             None

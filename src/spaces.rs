@@ -3,7 +3,7 @@
 use crosscap_algorithms::metric::{BruteForceOracle, CheckedMetric};
 use crosscap_algorithms::space::Space;
 use crosscap_backends::geodesic::{EdgeRule, GraphWarning};
-use crosscap_core::{Error, MetricSpace, PointCloud};
+use crosscap_core::{Error, MetricSpace, PointCloud, positive_length};
 use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
@@ -180,24 +180,19 @@ impl Spaces {
     /// # Errors
     /// [`Error::Parameter`] for a number without a meaning.
     pub fn check(&self) -> Result<(), Error> {
-        let refuse = |name: &'static str, value: String, expected: &str| {
-            Err(Error::Parameter {
-                name,
-                value,
-                expected: expected.into(),
-            })
-        };
         match self.graph {
-            EdgeRule::Within(r) if !(r > 0.0 && r.is_finite()) => {
-                return refuse("graph-eps", r.to_string(), "a positive length");
+            EdgeRule::Within(r) => drop(positive_length("graph-eps", r)?),
+            EdgeRule::Nearest(0) => {
+                return Err(Error::Parameter {
+                    name: "graph-k",
+                    value: "0".into(),
+                    expected: "at least 1".into(),
+                });
             }
-            EdgeRule::Nearest(0) => return refuse("graph-k", "0".into(), "at least 1"),
-            _ => {}
+            EdgeRule::Nearest(_) => {}
         }
-        if let Some(w) = self.lift.filter(|w| !(*w > 0.0 && w.is_finite())) {
-            return refuse("lift", w.to_string(), "a positive length");
-        }
-        Ok(())
+        self.lift
+            .map_or(Ok(()), |w| positive_length("lift", w).map(drop))
     }
 
     /// Whether one of the metrics is this one.

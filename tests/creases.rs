@@ -5,7 +5,7 @@ use crosscap::prelude::*;
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::surfaces::Random;
 use crosscap_algorithms::tangents::TangentField;
-use crosscap_algorithms::tuning::TangentTuning;
+use crosscap_algorithms::tuning::{TangentTuning, Tuning};
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
 use crosscap_core::squared_distance;
@@ -117,6 +117,26 @@ fn paths_cross_a_crease_where_it_is() {
         3.0 * joined[0] < plain[0] && 2.0 * joined[1] < plain[1],
         "{joined:?} {plain:?}"
     );
+}
+
+/// A thinner sheet leaves edges of the graph out.
+#[test]
+fn what_tangent_planes_decide_is_set_with_the_rest_and_reported() {
+    let surface = SampleSurface::find("sphere").unwrap();
+    let cloud = surface.sample(&Sampling::new(1500, 7)).unwrap().points;
+    let mut parameters = Parameters::new(0.6, 0.3).surface();
+    parameters.spaces.metric = MetricName::Geodesic;
+    parameters.spaces.sheets = true;
+    let run = |thickness: f64| {
+        let mut tuning = Tuning::MEASURED;
+        tuning.tangents.thickness = thickness;
+        let pipeline = Pipeline::new(parameters.clone()).unwrap().tuning(tuning);
+        { pipeline }.reconstruct(&cloud).unwrap().report
+    };
+    let [usual, thin] = [TangentTuning::MEASURED.thickness, 0.1].map(run);
+    assert_eq!(thin.tuning.tangents.thickness, 0.1);
+    let edges = [thin, usual].map(|report| report.graph.unwrap().edges);
+    assert!(edges[0] < edges[1], "{edges:?}");
 }
 
 /// Creases of 60 degrees need no graph of sheets, those of 30 degrees do.

@@ -113,6 +113,29 @@ pub enum Error {
     Interrupted,
 }
 
+/// The value of a parameter that is a length, if it is one: positive and finite.
+///
+/// # Errors
+/// [`Error::Parameter`] with the name otherwise.
+///
+/// ```
+/// use crosscap_core::positive_length;
+/// assert_eq!(positive_length("eps", 0.25)?, 0.25);
+/// let error = positive_length("eps", f64::NAN).unwrap_err();
+/// assert!(error.to_string().contains("eps"), "{error}");
+/// # Ok::<(), crosscap_core::Error>(())
+/// ```
+pub fn positive_length(name: &'static str, value: f64) -> Result<f64, Error> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    Err(Error::Parameter {
+        name,
+        value: value.to_string(),
+        expected: "a positive length".into(),
+    })
+}
+
 impl Error {
     /// Whether the input or a parameter is at fault, rather than the method on this data.
     pub fn is_input(&self) -> bool {

@@ -54,7 +54,7 @@ pub use compatibility::{ChartTriangle, CompatibilityTest, Meeting, TriangleRule}
 pub use complex::{Complex, CurveEdge, Mesh};
 pub use dimension::DimensionEstimator;
 pub use distances::SparseDistances;
-pub use error::Error;
+pub use error::{Error, positive_length};
 pub use estimate::DimensionEstimate;
 pub use ids::{Id, Label, Landmark, Row, Table};
 pub use landmarks::LandmarkSelector;

@@ -38,14 +38,15 @@ pub fn homology(py: Python<'_>, mesh: MeshArrays<'_>) -> PyResult<String> {
     Ok(json!(found).to_string())
 }
 
-/// What whoever asks about a mesh knows, as Python hands it over.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub struct Known {
-    dl: Option<f64>,
-    closed: bool,
-    prepare: Option<bool>,
-    least_hole: Option<f64>,
+/// What whoever asks about a mesh knows, as Python hands it over: a dictionary.
+fn asked(known: &Bound<'_, PyDict>) -> PyResult<Asked> {
+    let known = known.as_any();
+    Ok(Asked {
+        dl: known.get_item("dl")?.extract()?,
+        closed: known.get_item("closed")?.extract()?,
+        prepare: known.get_item("prepare")?.extract()?,
+        least_hole: known.get_item("least_hole")?.extract()?,
+    })
 }
 
 /// What is known about a mesh, as JSON: what `crosscap check --json` prints, and the reasons. `metadata` is JSON that tells how
@@ -56,18 +57,13 @@ pub fn check(
     mesh: MeshArrays<'_>,
     metadata: &str,
     points: Option<PyReadonlyArray2<'_, f64>>,
-    known: Known,
+    known: &Bound<'_, PyDict>,
 ) -> PyResult<String> {
     let mesh = mesh.mesh()?;
     let metadata: Value = serde_json::from_str(metadata).map_err(|error| bad_value(&error))?;
     let origin = Origin::of(&metadata).map_err(|why| bad_value(&why))?;
     let points = points.as_ref().map(cloud).transpose()?;
-    let asked = Asked {
-        dl: known.dl,
-        closed: known.closed,
-        prepare: known.prepare,
-        least_hole: known.least_hole,
-    };
+    let asked = asked(known)?;
     let (options, measuring) = (origin.certificate(&asked), origin.measuring(&asked));
     let found = py.detach(|| checked(&mesh, points.as_ref(), &options, &measuring));
     let found = found.map_err(|error| bad_value(&error))?;

@@ -2,7 +2,7 @@
 
 use crate::spaces::{MetricName, Spaces};
 use crosscap_algorithms::singularity::ModelName;
-use crosscap_core::Error;
+use crosscap_core::{Error, positive_length};
 use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
@@ -142,9 +142,7 @@ impl Parameters {
             ("dl", self.dl),
         ];
         for (name, value) in lengths {
-            if !(value > 0.0 && value.is_finite()) {
-                return refuse(name, value, "a positive length");
-            }
+            positive_length(name, value)?;
         }
         if !(self.dt > 0.0 && self.dt < 1.0) {
             return refuse("dt", self.dt, "a number strictly between 0 and 1");

@@ -53,7 +53,7 @@ impl Parts {
         } = &self.parameters;
         Ok(Prepared {
             boundary: rows.positions(input.cloud, boundary)?,
-            engines: Engines::new(spaces, *eps, &rows.cloud, threads)?,
+            engines: Engines::new(spaces, *eps, &rows.cloud, &self.tuning.tangents, threads)?,
             rows,
             given: input.given,
         })

@@ -5,7 +5,7 @@ use crate::execute::Execute;
 use crate::locality;
 use crosscap_core::{
     DimensionEstimate, DimensionEstimator, Error, MetricSpace, Neighbor, Neighborhood,
-    NeighborhoodOracle, PointCloud, Scalar,
+    NeighborhoodOracle, PointCloud, Scalar, positive_length,
 };
 
 /// At which distances a dimension is read.
@@ -29,12 +29,8 @@ impl Scale {
                 value: k.to_string(),
                 expected: "at least 4 neighbors".into(),
             }),
-            Self::Within(r) if !(r > 0.0 && r.is_finite()) => Err(Error::Parameter {
-                name: "eps",
-                value: r.to_string(),
-                expected: "a positive length".into(),
-            }),
-            _ => Ok(()),
+            Self::Nearest(_) => Ok(()),
+            Self::Within(r) => positive_length("eps", r).map(drop),
         }
     }
 

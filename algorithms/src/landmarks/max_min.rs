@@ -1,6 +1,6 @@
 //! Max-min landmarks.
 
-use crosscap_core::{Error, LandmarkSelector, NeighborhoodOracle, Scalar};
+use crosscap_core::{Error, LandmarkSelector, NeighborhoodOracle, Scalar, positive_length};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BinaryHeap;
@@ -35,7 +35,7 @@ impl<S: Scalar> LandmarkSelector for MaxMin<S> {
         separation: f64,
         seed: u64,
     ) -> Result<Vec<usize>, Error> {
-        super::check(separation)?;
+        positive_length("dl", separation)?;
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut tie = vec![0u32; oracle.len()];
         let mut gap = vec![-1.0; oracle.len()];

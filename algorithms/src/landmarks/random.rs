@@ -1,6 +1,6 @@
 //! Random landmarks.
 
-use crosscap_core::{Error, LandmarkSelector, NeighborhoodOracle, Scalar};
+use crosscap_core::{Error, LandmarkSelector, NeighborhoodOracle, Scalar, positive_length};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -29,7 +29,7 @@ impl<S: Scalar> LandmarkSelector for RandomGreedy<S> {
         separation: f64,
         seed: u64,
     ) -> Result<Vec<usize>, Error> {
-        super::check(separation)?;
+        positive_length("dl", separation)?;
         let mut blocked = vec![false; oracle.len()];
         let mut near = Vec::new();
         let mut block = |row: usize, blocked: &mut Vec<bool>| {

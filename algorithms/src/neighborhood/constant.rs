@@ -1,7 +1,7 @@
 //! One radius for all points.
 
 use super::{NeighborhoodPolicy, Surroundings};
-use crosscap_core::{Error, Scalar};
+use crosscap_core::{Error, Scalar, positive_length};
 
 /// The same radius everywhere (Martin & Watson 2011, section 2).
 ///
@@ -19,14 +19,7 @@ impl ConstantRadius {
     /// # Errors
     /// [`Error::Parameter`] unless it is positive and finite.
     pub fn new(eps: f64) -> Result<Self, Error> {
-        if eps > 0.0 && eps.is_finite() {
-            return Ok(Self(eps));
-        }
-        Err(Error::Parameter {
-            name: "eps",
-            value: eps.to_string(),
-            expected: "a positive length".into(),
-        })
+        positive_length("eps", eps).map(Self)
     }
 }
 

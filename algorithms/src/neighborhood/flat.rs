@@ -1,7 +1,7 @@
 //! As large as the surface is flat.
 
 use super::{NeighborhoodPolicy, Surroundings, reach_of_nearest};
-use crosscap_core::{DimensionEstimator, Error, Neighbor, Neighborhood, Scalar};
+use crosscap_core::{DimensionEstimator, Error, Neighbor, Neighborhood, Scalar, positive_length};
 
 /// The largest radius of a falling ladder at which an estimator calls the neighborhood
 /// 2-dimensional: eps, 3/4 eps, 9/16 eps, ... down to the radius of the `least` nearest other points.
@@ -31,16 +31,13 @@ impl<'a, S: Scalar> FlatRadius<'a, S> {
         least: usize,
         estimator: &'a dyn DimensionEstimator<Scalar = S>,
     ) -> Result<Self, Error> {
-        let wrong = |name, value: String, expected: &str| Error::Parameter {
-            name,
-            value,
-            expected: expected.into(),
-        };
-        if !(eps > 0.0 && eps.is_finite()) {
-            return Err(wrong("eps", eps.to_string(), "a positive length"));
-        }
+        let eps = positive_length("eps", eps)?;
         if least == 0 {
-            return Err(wrong("nearest points", "0".into(), "at least 1"));
+            return Err(Error::Parameter {
+                name: "nearest points",
+                value: "0".into(),
+                expected: "at least 1".into(),
+            });
         }
         Ok(Self {
             eps,

@@ -1,6 +1,6 @@
 //! The two tolerances that models of crossing sheets share.
 
-use crosscap_core::{Error, LocalPoints, Rejection};
+use crosscap_core::{Error, LocalPoints, Rejection, positive_length};
 use nalgebra::SVector;
 
 /// Fit tolerance dp and curve tolerance eps_p, unit of the data (Martin & Watson 2011, section 2.2).
@@ -14,16 +14,10 @@ impl Tolerance {
     /// # Errors
     /// [`Error::Parameter`] unless both are positive and finite.
     pub(super) fn new(dp: f64, ep: f64) -> Result<Self, Error> {
-        for (name, value) in [("dp", dp), ("ep", ep)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::Parameter {
-                    name,
-                    value: value.to_string(),
-                    expected: "a positive length".into(),
-                });
-            }
-        }
-        Ok(Self { dp, ep })
+        Ok(Self {
+            dp: positive_length("dp", dp)?,
+            ep: positive_length("ep", ep)?,
+        })
     }
 
     /// The root of the mean square, where it is within dp.

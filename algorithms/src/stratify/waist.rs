@@ -13,7 +13,7 @@ use super::strata::Strata;
 use super::stratification::{PointStratum, Stratification};
 use crosscap_core::{
     CellNeighborhood, Error, Landmark, LandmarkSelector, PointCloud, Row, Scalar,
-    StratifiedLandmarks, Table,
+    StratifiedLandmarks, Table, positive_length,
 };
 
 /// Parameters of the stratification.
@@ -29,16 +29,8 @@ pub struct StratifyOptions {
 
 impl StratifyOptions {
     fn check(&self) -> Result<(), Error> {
-        for (name, value) in [("dl", self.dl), ("tri-eps", self.tri_eps)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::Parameter {
-                    name,
-                    value: value.to_string(),
-                    expected: "a positive length".into(),
-                });
-            }
-        }
-        Ok(())
+        positive_length("dl", self.dl)?;
+        positive_length("tri-eps", self.tri_eps).map(drop)
     }
 }
 

@@ -5,7 +5,7 @@ use super::row::CloudRow;
 use super::tiling::Bounds;
 use crate::balls::BallTree;
 use crate::landmarks::BARRED;
-use crosscap_core::{Error, PointCloud, Row, Table, squared_distance};
+use crosscap_core::{Error, PointCloud, Row, Table, positive_length, squared_distance};
 
 /// Squared distances that are summed in another order differ by less than this share.
 pub(super) const ROUNDING: f64 = 1e-12;
@@ -38,13 +38,7 @@ impl Tile {
         ranks: Vec<u32>,
     ) -> Result<Self, Error> {
         let shape = |found: String, expected: String| Err(Error::Shape { found, expected });
-        if !(halo > 0.0 && halo.is_finite()) {
-            return Err(Error::Parameter {
-                name: "halo",
-                value: halo.to_string(),
-                expected: "a positive length".into(),
-            });
-        }
+        positive_length("halo", halo)?;
         let count = points.len();
         if [rows.len(), ranks.len()] != [count; 2] {
             let found = format!("{} rows and {} ranks", rows.len(), ranks.len());

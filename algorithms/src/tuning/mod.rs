@@ -47,6 +47,8 @@ pub struct Tuning {
     pub refinement: RefinementTuning,
     /// When the program's own models believe a fit.
     pub models: ModelTuning,
+    /// Planes that tell which points are on one sheet, for metrics that ask: the graph is made before the stages.
+    pub tangents: TangentTuning,
 }
 
 impl Tuning {
@@ -59,6 +61,7 @@ impl Tuning {
         front: FrontTuning::MEASURED,
         refinement: RefinementTuning::MEASURED,
         models: ModelTuning::MEASURED,
+        tangents: TangentTuning::MEASURED,
     };
 }
 

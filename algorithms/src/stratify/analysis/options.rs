@@ -1,6 +1,6 @@
 //! What an analysis is asked for.
 
-use crosscap_core::{Error, Radii, Row, Table};
+use crosscap_core::{Error, Radii, Row, Table, positive_length};
 
 /// Parameters of the analysis.
 #[derive(Clone, Debug)]
@@ -31,13 +31,7 @@ impl AnalysisOptions {
     }
 
     pub(super) fn check(&self, points: usize) -> Result<(), Error> {
-        if !(self.eps > 0.0 && self.eps.is_finite()) {
-            return Err(Error::Parameter {
-                name: "eps",
-                value: self.eps.to_string(),
-                expected: "a positive length".into(),
-            });
-        }
+        positive_length("eps", self.eps)?;
         match &self.radii {
             Some(radii) if radii.len() != points => Err(Error::Shape {
                 found: format!("{} radii", radii.len()),

@@ -2,7 +2,7 @@
 
 use crate::stratify::analysis::{Analysis, Analyzer, Fitter, Scratch, marked};
 use crate::stratify::site::{FitUsed, On, Site, StratumKind};
-use crosscap_core::{Error, Radii, Row, Scalar, Table};
+use crosscap_core::{Error, Radii, Row, Scalar, Table, positive_length};
 
 /// Parameters of the published method, lengths in the unit of the data.
 ///
@@ -70,16 +70,9 @@ impl Published {
             ("ep", self.ep),
             ("dl", self.dl),
         ];
-        for (name, value) in lengths {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::Parameter {
-                    name,
-                    value: value.to_string(),
-                    expected: "a positive length".into(),
-                });
-            }
-        }
-        Ok(())
+        lengths
+            .into_iter()
+            .try_for_each(|(name, value)| positive_length(name, value).map(drop))
     }
 
     /// Dimension of every neighborhood and the union of all B0 (the paper's sections 2.1, 2.2.1).
