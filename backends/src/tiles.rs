@@ -3,33 +3,20 @@
 //! The points are read once, some at a time, and written tile by tile into one scratch file. A question is answered
 //! tile by tile, as many of them side by side as there are threads. Nothing else of the cloud is in memory.
 
+mod divide;
+
+pub use divide::bytes_to_divide;
+
 use crate::files::{FileError, PointRows};
-use crosscap_algorithms::landmarks::random_ranks;
+use crosscap_algorithms::landmarks::random_ranks_but;
 use crosscap_algorithms::tiles::{Answer, CloudRow, Question, Tile, TileId, Tiles, Tiling};
 use crosscap_core::execute::{Execute, few};
 use crosscap_core::{Error, PointCloud, Table};
+use divide::{Extent, NUMBER, SCRATCH, divided, record};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
-
-/// Bytes of coordinates that are read at a time, and bytes that wait to be written, of all tiles together.
-const AT_ONCE: usize = 4 << 20;
-/// Fewest bytes that wait for one tile, so that the file is written in pieces and not number by number.
-const LEAST_WAITING: usize = 4 << 10;
-/// What the scratch file is called in messages.
-const SCRATCH: &str = "(scratch file)";
-/// Bytes of a coordinate.
-const NUMBER: usize = size_of::<f64>();
-/// Bytes of row and rank of a point.
-const NAMES: usize = 2 * size_of::<u32>();
-
-/// Bytes that are held while the points are divided among tiles: what is read and what waits, and the random order of all
-/// points while it is made.
-pub fn bytes_to_divide(points: usize, tiles: usize) -> u64 {
-    let waiting = AT_ONCE.max(tiles * LEAST_WAITING);
-    (3 * AT_ONCE + waiting) as u64 + 2 * size_of::<u32>() as u64 * points as u64
-}
 
 /// The tiles of a cloud in a scratch file.
 ///
@@ -42,16 +29,10 @@ pub struct TilesOnDisk<'a> {
     points: usize,
     dimension: usize,
     halo: f64,
+    seed: u64,
     execute: &'a dyn Execute,
     /// Rows of the file that were left out, in order.
     copies: Vec<u32>,
-}
-
-/// A part of the file.
-#[derive(Clone, Copy)]
-struct Extent {
-    at: u64,
-    bytes: usize,
 }
 
 impl<'a> TilesOnDisk<'a> {
@@ -77,6 +58,7 @@ impl<'a> TilesOnDisk<'a> {
             points: cloud.len(),
             dimension: cloud.dimension(),
             halo,
+            seed,
             execute,
             copies: Vec::new(),
         };
@@ -134,17 +116,28 @@ impl<'a> TilesOnDisk<'a> {
         Tile::new(bounds, self.halo, points, rows, ranks)
     }
 
+    /// Writes other ranks into the records of a part of the file.
+    fn rank_anew(&self, extent: Extent, ranks: &[u32], bytes: &mut Vec<u8>) -> std::io::Result<()> {
+        self.fetch(extent, bytes)?;
+        for record in bytes.chunks_exact_mut(record(self.dimension)) {
+            let (row, rank) = record[NUMBER * self.dimension..].split_at_mut(size_of::<u32>());
+            let row = row
+                .iter()
+                .rev()
+                .fold(0, |row, &byte| row << 8 | usize::from(byte));
+            rank.copy_from_slice(&ranks[row].to_le_bytes());
+        }
+        let mut file = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
+        file.seek(SeekFrom::Start(extent.at))?;
+        file.write_all(bytes)
+    }
+
     fn fetch(&self, extent: Extent, bytes: &mut Vec<u8>) -> std::io::Result<()> {
         bytes.resize(extent.bytes, 0);
         let mut file = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
         file.seek(SeekFrom::Start(extent.at))?;
         file.read_exact(bytes)
     }
-}
-
-/// Bytes of a point.
-fn record(dimension: usize) -> usize {
-    NUMBER * dimension + NAMES
 }
 
 impl Tiles for TilesOnDisk<'_> {
@@ -178,6 +171,20 @@ impl Tiles for TilesOnDisk<'_> {
         self.copies.len()
     }
 
+    fn bar(&self, rows: &[CloudRow]) -> Result<(), Error> {
+        let barred: Vec<u32> = rows.iter().map(|row| row.index() as u32).collect();
+        let ranks = random_ranks_but(self.points, &barred, self.seed);
+        let mut bytes = Vec::new();
+        for &extent in self.extents.iter().flatten() {
+            self.rank_anew(extent, &ranks, &mut bytes)
+                .map_err(|error| Error::Storage {
+                    what: "a random order into the scratch file".into(),
+                    reason: error.to_string(),
+                })?;
+        }
+        Ok(())
+    }
+
     fn ask(&self, question: &Question) -> Result<Vec<Answer>, Error> {
         let answers = few(self.execute, self.extents.len(), |k| {
             self.tile(TileId::new(k))?.answer(question)
@@ -189,101 +196,6 @@ impl Tiles for TilesOnDisk<'_> {
             }
             error
         })
-    }
-}
-
-/// The points of a file but `copies`, rows in order, divided among tiles: the scratch file, and where the points of every tile are.
-fn divided(
-    cloud: &PointRows,
-    tiling: &Tiling,
-    halo: f64,
-    seed: u64,
-    folder: &Path,
-    copies: &[u32],
-) -> Result<(File, Table<TileId, Vec<Extent>>), FileError> {
-    let unwritten = |source| FileError::Write {
-        path: folder.join(SCRATCH),
-        source,
-    };
-    let mut divided = Divided::new(tiling, tempfile::tempfile_in(folder).map_err(unwritten)?);
-    let ranks = random_ranks(cloud.len() - copies.len(), seed);
-    let rows_at_once = (AT_ONCE / (NUMBER * cloud.dimension().max(1))).max(1);
-    let mut copies = copies.iter().copied().peekable();
-    let mut row: u32 = 0;
-    for start in (0..cloud.len()).step_by(rows_at_once) {
-        let rows = start..cloud.len().min(start + rows_at_once);
-        let points = cloud.read(rows.clone())?;
-        let mut written = Ok(());
-        for (input, place) in rows.zip(points.iter()) {
-            if copies.next_if_eq(&(input as u32)).is_some() {
-                continue;
-            }
-            tiling.near(place, halo, |tile| {
-                if written.is_ok() {
-                    written = divided.push(tile, place, row, ranks[row as usize]);
-                }
-            });
-            row += 1;
-        }
-        written.map_err(unwritten)?;
-    }
-    divided.end().map_err(unwritten)
-}
-
-/// Points on their way to the file.
-struct Divided {
-    file: File,
-    at: u64,
-    waiting: Table<TileId, Vec<u8>>,
-    /// How many bytes wait for a tile before they are written.
-    most: usize,
-    extents: Table<TileId, Vec<Extent>>,
-}
-
-impl Divided {
-    fn new(tiling: &Tiling, file: File) -> Self {
-        let count = tiling.bounds().len();
-        Self {
-            file,
-            at: 0,
-            waiting: Table::filled(count, Vec::new()),
-            most: (AT_ONCE / count.max(1)).max(LEAST_WAITING),
-            extents: Table::filled(count, Vec::new()),
-        }
-    }
-
-    fn push(&mut self, tile: TileId, place: &[f64], row: u32, rank: u32) -> std::io::Result<()> {
-        let own = &mut self.waiting[tile];
-        if own.capacity() == 0 {
-            own.reserve_exact(self.most + record(place.len()));
-        }
-        place.iter().for_each(|x| own.extend(x.to_le_bytes()));
-        own.extend(row.to_le_bytes());
-        own.extend(rank.to_le_bytes());
-        if own.len() >= self.most {
-            return self.write(tile);
-        }
-        Ok(())
-    }
-
-    fn write(&mut self, tile: TileId) -> std::io::Result<()> {
-        let own = &mut self.waiting[tile];
-        self.file.write_all(own)?;
-        let bytes = own.len();
-        self.extents[tile].push(Extent { at: self.at, bytes });
-        self.at += bytes as u64;
-        own.clear();
-        Ok(())
-    }
-
-    fn end(mut self) -> std::io::Result<(File, Table<TileId, Vec<Extent>>)> {
-        let left: Vec<TileId> = self.waiting.ids().collect();
-        for tile in left {
-            if !self.waiting[tile].is_empty() {
-                self.write(tile)?;
-            }
-        }
-        Ok((self.file, self.extents))
     }
 }
 
@@ -314,6 +226,22 @@ mod tests {
             Question::Rows((10..400).map(CloudRow::new).collect()),
         ] {
             assert_eq!(disk.ask(&question).unwrap(), memory.ask(&question).unwrap());
+        }
+        // Ranked anew without some rows, which leaves all else as it is.
+        let barred: Vec<CloudRow> = (0..6_000).map(|k| CloudRow::new(3 * k)).collect();
+        let taken = memory
+            .rows(vec![CloudRow::new(0), CloudRow::new(7_000)])
+            .unwrap();
+        memory.bar(&barred).unwrap();
+        disk.bar(&barred).unwrap();
+        let question = Question::Landmarks { separation, taken };
+        let anew = disk.ask(&question).unwrap();
+        assert_eq!(anew, memory.ask(&question).unwrap());
+        for answer in anew {
+            let Answer::Landmarks { chosen, .. } = answer else {
+                panic!("{answer:?}")
+            };
+            assert!(chosen.rows().iter().all(|row| !barred.contains(row)));
         }
         let least = 20_000 / 5 * record(3) as u64;
         assert!(disk.bytes() > 5 * least && disk.bytes() < 15 * least);

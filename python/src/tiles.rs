@@ -9,6 +9,7 @@ use crosscap::{Parameters, Pipeline};
 use crosscap_algorithms::dimension::{Scale, WholeCloud};
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::landmarks;
+use crosscap_algorithms::singularity::ModelName;
 use crosscap_algorithms::tiles::{Answer, CloudRow, Question, Tile, TileId, Tiles, Tiling};
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::Error;
@@ -60,11 +61,17 @@ pub fn tile_members<'py>(
     Ok(members.map(|own| PyArray1::from_vec(py, own)).collect())
 }
 
-/// The place of every row in the random order in which landmarks are chosen.
+/// The place of every row in the random order in which landmarks are chosen; `barred` rows, given in order, are in none.
 #[pyfunction]
-pub fn random_ranks(py: Python<'_>, count: usize, seed: u64) -> Bound<'_, PyArray1<u32>> {
-    let ranks = py.detach(|| landmarks::random_ranks(count, seed));
-    PyArray1::from_vec(py, ranks)
+pub fn random_ranks<'py>(
+    py: Python<'py>,
+    count: usize,
+    seed: u64,
+    barred: PyReadonlyArray1<'py, u32>,
+) -> PyResult<Bound<'py, PyArray1<u32>>> {
+    let barred = barred.as_slice()?.to_vec();
+    let ranks = py.detach(|| landmarks::random_ranks_but(count, &barred, seed));
+    Ok(PyArray1::from_vec(py, ranks))
 }
 
 /// The answer of a tile, which has number `tile` in the tiling, to a question.
@@ -143,17 +150,22 @@ pub struct TileSettings {
     dl: f64,
     tri_eps: Option<f64>,
     surface: bool,
+    models: Vec<String>,
     seed: u64,
 }
 
 impl TileSettings {
     fn pipeline(&self) -> Result<Pipeline, Error> {
-        Pipeline::new(Parameters {
+        let models = self.models.iter().map(|name| name.parse::<ModelName>());
+        let pipeline = Pipeline::new(Parameters {
             tri_eps: self.tri_eps,
             surface: self.surface,
+            models: models.collect::<Result<_, _>>()?,
             seed: self.seed,
             ..Parameters::new(self.eps, self.dl)
-        })
+        })?;
+        pipeline.takes_tiles()?;
+        Ok(pipeline)
     }
 }
 
@@ -167,6 +179,7 @@ pub fn tile_halo(settings: TileSettings) -> PyResult<f64> {
 /// Tiles that a function of Python asks.
 struct Asked<'a> {
     ask: &'a Py<PyAny>,
+    bar: &'a Py<PyAny>,
     run: &'a Run,
     points: usize,
     dimension: usize,
@@ -186,6 +199,14 @@ impl Tiles for Asked<'_> {
         self.halo
     }
 
+    fn bar(&self, rows: &[CloudRow]) -> Result<(), Error> {
+        let rows: Vec<u32> = rows.iter().map(|row| row.index() as u32).collect();
+        self.run.attached(|py| {
+            let rows = PyArray1::from_vec(py, rows);
+            self.bar.bind(py).call1((rows,)).map(drop)
+        })
+    }
+
     fn ask(&self, question: &Question) -> Result<Vec<Answer>, Error> {
         self.run.attached(|py| {
             let answers = self.ask.bind(py).call1((packed(py, question)?,))?;
@@ -195,7 +216,8 @@ impl Tiles for Asked<'_> {
     }
 }
 
-/// Reconstructs a surface from tiles: `ask` takes a question, and returns what [`tile_answer`] says of every tile.
+/// Reconstructs a surface from tiles: `ask` takes a question, and returns what [`tile_answer`] says of every tile; `bar` takes rows, and makes
+/// the tiles anew with [`random_ranks`] that these are not in.
 #[pyfunction]
 pub fn reconstruct_tiles(
     py: Python<'_>,
@@ -203,6 +225,7 @@ pub fn reconstruct_tiles(
     dimension: usize,
     settings: TileSettings,
     ask: Py<PyAny>,
+    bar: Py<PyAny>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Told> {
     let run = Run::default();
@@ -210,6 +233,7 @@ pub fn reconstruct_tiles(
         let mut pipeline = settings.pipeline()?.interrupt(run.interrupt());
         let asked = Asked {
             ask: &ask,
+            bar: &bar,
             run: &run,
             points,
             dimension,

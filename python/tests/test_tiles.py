@@ -78,8 +78,10 @@ def test_local_dimensions_are_the_same(torus, estimator):
 
 
 def test_what_tiles_cannot_be_asked_is_refused(torus):
-    with pytest.raises(ValueError, match="curves are not looked for in tiles"):
-        crosscap.tiles.reconstruct(torus, EPS, DL)
+    with pytest.raises(ValueError, match="boundaries are not looked for in tiles"):
+        crosscap.tiles.reconstruct(torus, EPS, DL, models=["two-planes", "boundary"])
+    with pytest.raises(ValueError, match="expected a list of names"):
+        crosscap.tiles.reconstruct(torus, EPS, DL, models="auto")
     with pytest.raises(ValueError, match="without copies"):
         crosscap.tiles.reconstruct(np.vstack([torus, torus[:1]]), EPS, DL, **SURFACE)
     lone = np.vstack([torus, [[50.0, 0.0, 0.0]]])
@@ -88,6 +90,30 @@ def test_what_tiles_cannot_be_asked_is_refused(torus):
     # As it comes from the process of a worker.
     assert str(pickle.loads(pickle.dumps(refused.value))) == str(refused.value)
     assert "4000" in str(refused.value)
+
+
+CROSSING = {"models": ["two-planes"], "random_state": 3}
+
+
+@pytest.fixture(scope="module")
+def spheres():
+    return crosscap.sample("two_spheres", 8000, random_state=7).points
+
+
+@pytest.fixture(scope="module")
+def whole_spheres(spheres):
+    return crosscap.SurfaceReconstruction(0.3, 0.15, prepare=False, **CROSSING).fit(spheres)
+
+
+def test_surfaces_that_cross_give_the_same_bytes(spheres, whole_spheres):
+    assert whole_spheres.betti_ == (1, 0, 3)
+    found = crosscap.tiles.reconstruct(spheres, 0.3, 0.15, tiles=5, n_jobs=2, **CROSSING)
+    assert told(found) == told(whole_spheres)
+
+
+def test_workers_give_the_same_bytes_of_surfaces_that_cross(spheres, whole_spheres, cluster):
+    found = crosscap.dask.reconstruct(spheres, 0.3, 0.15, tiles=4, **CROSSING)
+    assert told(found) == told(whole_spheres)
 
 
 @pytest.fixture(scope="module")

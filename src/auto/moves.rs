@@ -143,8 +143,8 @@ pub(super) fn opened(
 
 /// Factor on both lengths where points scatter.
 const WIDER: f64 = 1.2;
-/// Neighborhoods that scatter asks for at least, in standard deviations. Two spheres, a torus through one and a double bubble passed at 10
-/// to 20 of them where 4 to 8 failed.
+/// Neighborhoods that scatter asks for at least, in standard deviations: a double bubble with noise of half of dl left 18 stars open at 4
+/// of them, and 2 at 10.
 const LEAST_WIDE: f64 = 10.0;
 /// Widest neighborhoods that scatter asks for, in standard deviations: beyond, what is left of it after the points were moved is
 /// not what fails.

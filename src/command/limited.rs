@@ -172,7 +172,8 @@ impl Limited {
         let [eps, dl] = self.lengths;
         let chosen = Parameters {
             seed: pinned.seed.unwrap_or_default(),
-            ..Parameters::new(eps, dl).surface()
+            surface: pinned.surface == Some(true),
+            ..Parameters::new(eps, dl)
         };
         let bare = Pinned {
             seed: pinned.seed,
@@ -186,14 +187,16 @@ impl Limited {
         // What else is given would have to be taken back, so that only the usual run can be told as a whole.
         let command = match *pinned == bare {
             true => format!("`{}`", repeat::command(pinned, &chosen, false)),
-            false => format!("--eps {eps} --dl {dl} --surface and no other choice"),
+            false => format!(
+                "--eps {eps} --dl {dl} and no other choice (--surface where no crossings are)"
+            ),
         };
         let chosen = match pinned.complete() {
             Some(_) => String::new(),
             None => format!(" (lengths from {} of the points)", self.sample.len()),
         };
         Failure::usage(format!(
-            "{}: not in tiles: {why}; for a surface without crossings and boundary: {command}{chosen}; else --memory-limit {} or more, or \
+            "{}: not in tiles: {why}; for a surface without boundary: {command}{chosen}; else --memory-limit {} or more, or \
              fewer points",
             self.rows.path().display(),
             enough(self.in_memory)
@@ -205,6 +208,7 @@ impl Limited {
         let wanted = Threads::new(pipeline.parameters().threads.unwrap_or(0))?.count();
         let halo = pipeline.tile_halo();
         let most = (self.sample.len() / LEAST_SAMPLED).max(1);
+        let excerpt = self.needs.excerpt(&self.sample, pipeline)?;
         let tilings: Vec<(Tiling, usize)> = std::iter::successors(Some(1), |count| Some(2 * count))
             .take_while(|&count| count <= most)
             .map(|count| {
@@ -218,7 +222,7 @@ impl Limited {
             for (tiling, largest) in &tilings {
                 let bytes = self
                     .needs
-                    .in_tiles(tiling.bounds().len(), *largest, threads);
+                    .in_tiles(tiling.bounds().len(), *largest, threads, excerpt);
                 least = least.min(bytes);
                 if bytes <= self.limit && tiling.bounds().len() >= threads {
                     let tiling = tiling.clone();

@@ -3,8 +3,11 @@
 //! Amounts bound what runs held at most (`/usr/bin/time -v`, one thread) from above. Measured on a torus and on two spheres that cross, in R^3 and
 //! turned into R^24, 10^5 to 10^6 points, 600 to 31,000 landmarks; the table is in the guide, *Clouds in tiles*.
 
+use crosscap::pipeline::{Parameters, Pipeline};
 use crosscap::{MetricName, Pinned, Spaces};
+use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::landmarks::RandomGreedy;
+use crosscap_algorithms::moments::MomentTree;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::tiles::bytes_to_divide;
 use crosscap_core::{Error, LandmarkSelector, PointCloud};
@@ -38,6 +41,14 @@ const LANDMARK_COORDINATE: f64 = 1500.0;
 const TILE_POINT: f64 = 120.0;
 /// Of every coordinate of a tile that is asked.
 const TILE_COORDINATE: f64 = 40.0;
+/// Of every point of the excerpt that curves are laid in, beside its coordinates.
+const EXCERPT_POINT: f64 = 180.0;
+/// Of every coordinate of it.
+const EXCERPT_COORDINATE: f64 = 60.0;
+/// A ball of a sample must hold so many points on average for its dimension to say something.
+const SAMPLED_BALL: f64 = 40.0;
+/// A crossing shows in balls about points up to so many radii from it, or farther.
+const SHOWN_FROM: f64 = 0.6;
 
 const MIB: f64 = (1 << 20) as f64;
 
@@ -110,13 +121,40 @@ impl Needs {
         (self.in_one_place() + self.points as f64 * point) as u64
     }
 
-    /// Bytes of a run in so many tiles, the largest of which has so many points, asked by so many threads.
-    pub fn in_tiles(&self, tiles: usize, largest: usize, threads: usize) -> u64 {
+    /// About how many points the excerpt has that curves are laid in. Balls of a sample have to be larger, and show a crossing from farther away.
+    pub fn excerpt(&self, sample: &PointCloud<f64>, pipeline: &Pipeline) -> Result<usize, Error> {
+        let Parameters {
+            eps, dt, surface, ..
+        } = *pipeline.parameters();
+        if surface {
+            return Ok(0);
+        }
+        let tree = MomentTree::new(sample)?;
+        let of = |eps: f64| tree.settled_dimensions(eps, dt, &Serial);
+        let mut balls = of(eps)?;
+        let total: f64 = balls.iter().map(|ball| f64::from(ball.neighbors)).sum();
+        let fuller = SAMPLED_BALL * balls.len() as f64 / total;
+        let mut reach = pipeline.excerpt_reach();
+        if fuller > 1.0 && sample.len() < self.points {
+            let wide = eps * fuller.sqrt();
+            balls = of(wide)?;
+            reach = (reach - SHOWN_FROM * (wide - eps)).max(eps);
+        }
+        let curved = balls.iter().enumerate().filter(|x| x.1.dimension != 2);
+        let curved: Vec<usize> = curved.map(|x| x.0).collect();
+        let near = EuclideanOracle::new(sample.select(&curved))?;
+        let count = sample.iter().filter(|p| near.is_near(p, reach)).count();
+        Ok((count as f64 / sample.len() as f64 * self.points as f64) as usize)
+    }
+
+    /// Bytes of a run in so many tiles, the largest of which has so many points, asked by so many threads, with an excerpt of so many points.
+    pub fn in_tiles(&self, tiles: usize, largest: usize, threads: usize, excerpt: usize) -> u64 {
         let point = TILE_POINT + TILE_COORDINATE * self.dimension as f64;
         let fetched = FETCHED + FETCHED_COORDINATE * self.dimension as f64;
         let asked = self.in_one_place()
             + self.points.min(MOST_LOOKED_AT) as f64 * fetched
-            + (largest * threads.min(tiles)) as f64 * point;
+            + (largest * threads.min(tiles)) as f64 * point
+            + excerpt as f64 * (EXCERPT_POINT + EXCERPT_COORDINATE * self.dimension as f64);
         let divided = ALWAYS as u64 + bytes_to_divide(self.points, tiles);
         divided.max(asked as u64)
     }

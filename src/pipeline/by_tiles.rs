@@ -9,8 +9,16 @@ use super::tiled::Tiled;
 use super::{Method, Outcome, Parts, Pipeline, Stage};
 use crate::watched::{Distortion, Watched};
 use crosscap_algorithms::certificate::Verdict;
-use crosscap_algorithms::tiles::{Question, Tiles, landmarks};
-use crosscap_core::{Error, LocalChart};
+use crosscap_algorithms::dimension::PrincipalComponents;
+use crosscap_algorithms::space::Space;
+use crosscap_algorithms::stratify::{
+    Analysis, AnalysisOptions, Analyzer, ChartSpace, Cut, StratifyOptions,
+};
+use crosscap_algorithms::tiles::{
+    BallQuestion, Candidates, Curves, Excerpt, Gathered, Question, Tiles, landmarks,
+};
+use crosscap_backends::euclidean::EuclideanOracle;
+use crosscap_core::{DimensionEstimator, Error, LocalChart};
 
 impl Pipeline {
     /// How far the points of every tile have to go beyond its box for [`reconstruct_tiles`](Self::reconstruct_tiles), unit of
@@ -24,8 +32,26 @@ impl Pipeline {
             parameters.chart_radius(),
             &tuning.cells,
         );
+        let reach = match parameters.surface {
+            true => reach,
+            false => reach.max(parameters.eps),
+        };
         // Rounding of the sum must not make the halo too small for itself.
         reach * (1.0 + 1e-9)
+    }
+
+    /// How far from balls that are not 2-dimensional the points are gathered that curves are laid in, at first, unit of the data; where it is too
+    /// little they are gathered once more.
+    ///
+    /// Beside the curves fits label points, charts that reach these belong to landmarks beyond, and what is in these charts has to be known with its nearest
+    /// neighbors.
+    pub fn excerpt_reach(&self) -> f64 {
+        let Parts {
+            parameters, tuning, ..
+        } = &self.parts;
+        let charts = 2.0 * parameters.chart_radius();
+        let gaps = (tuning.cells.curve_gap + 1.0) * parameters.dl;
+        charts + gaps + tuning.analysis.label_margin * parameters.eps
     }
 
     /// Whether tiles can be asked for all that this pipeline wants to know.
@@ -54,6 +80,7 @@ impl Pipeline {
 
     fn tiled(&mut self, tiles: &dyn Tiles) -> Result<Outcome, Error> {
         let halo = self.tile_halo();
+        let reach = self.excerpt_reach();
         let Self {
             parts, observer, ..
         } = self;
@@ -68,15 +95,127 @@ impl Pipeline {
         let mut progress = Progress::new(observer, &parts.interrupt);
         progress.enter(Stage::Index);
         look_over(tiles)?;
+        let asked = Asked { parts, tiles };
+        let mut outcome = match parts.parameters.surface {
+            true => asked.finished(None, &mut progress)?,
+            false => asked.with_curves(reach, &mut progress)?,
+        };
+        outcome.report.seconds = progress.finish();
+        Ok(outcome)
+    }
+}
+
+/// Tiles, and what asks them.
+struct Asked<'t> {
+    parts: &'t Parts,
+    tiles: &'t dyn Tiles,
+}
+
+/// What was found out about curves.
+struct Found<'f> {
+    analysis: &'f Analysis,
+    curves: &'f Curves<'f>,
+    estimator: &'f str,
+}
+
+impl Asked<'_> {
+    /// The outcome where curves are looked for, in an excerpt that is made wider until it knows all that is asked of it.
+    fn with_curves(&self, mut reach: f64, progress: &mut Progress<'_>) -> Result<Outcome, Error> {
+        progress.enter(Stage::Neighborhoods);
+        let candidates = Candidates::of(self.tiles, self.parts.balls())?;
+        loop {
+            let excerpt = Excerpt::gather(self.tiles, &candidates, reach)?;
+            let end = self.in_excerpt(&excerpt, progress);
+            match excerpt.wider() {
+                None => return end,
+                Some(wider) => reach = wider,
+            }
+            progress.enter(Stage::Neighborhoods);
+        }
+    }
+
+    /// The same with an excerpt; of no use where that turns out to be too narrow.
+    fn in_excerpt(&self, excerpt: &Excerpt, progress: &mut Progress<'_>) -> Result<Outcome, Error> {
+        let (parts, parameters) = (self.parts, &self.parts.parameters);
+        let threads = parts.threads()?;
+        let tree = EuclideanOracle::new(excerpt.cloud().clone())?;
+        let oracle = excerpt.watched(&tree);
+        let estimator = PrincipalComponents::new(parameters.dt)?;
+        let analyzer = Analyzer {
+            space: Space::new(&tree, &oracle),
+            estimator: &estimator,
+            models: parts.models.all(),
+            execute: &threads,
+            tuning: &parts.tuning,
+        };
+        let options = AnalysisOptions {
+            eps: parameters.eps,
+            radii: None,
+            surface: false,
+            boundary: Vec::new(),
+        };
+        let analysis = analyzer.analyze_part(&options, excerpt.balls());
+        let analysis = analysis.map_err(|error| self.in_input(error, excerpt))?;
+        let options = StratifyOptions {
+            dl: parameters.dl,
+            tri_eps: parameters.chart_radius(),
+            seed: parameters.seed,
+        };
+        let cut = Cut::laid(&analyzer, &analysis, ChartSpace::Places, &options)?;
+        let curves = Curves::new(excerpt, &cut, &options, &parts.tuning.cells);
+        let found = Found {
+            analysis: &analysis,
+            curves: &curves,
+            estimator: estimator.name(),
+        };
+        self.finished(Some(&found), progress)
+    }
+
+    /// An error with rows of the input instead of those of an excerpt.
+    fn in_input(&self, mut error: Error, excerpt: &Excerpt) -> Error {
+        if let Error::Dimension { point, .. } | Error::Law { point, .. } = &mut error
+            && let Some(&row) = excerpt.points().rows().get(*point)
+        {
+            *point = self.tiles.input_row(row);
+        }
+        error
+    }
+
+    /// The outcome with what was found out about curves, where they were looked for.
+    fn finished(
+        &self,
+        found: Option<&Found<'_>>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Outcome, Error> {
+        let Self { parts, tiles } = *self;
         progress.enter(Stage::Landmarks);
         let watched = Watched::new(parts.chart.as_ref(), &parts.interrupt);
-        let chosen = landmarks(tiles, parts.parameters.dl)?;
-        let maker = Tiled::new(parts, tiles, &watched, chosen);
-        let (made, judged) = maker.mesh(&mut progress)?;
+        let curves = found.map(|found| found.curves);
+        let mut first = Gathered::new(tiles.dimension());
+        if let Some(curves) = curves {
+            tiles.bar(&curves.barred())?;
+            first = curves.taken();
+        }
+        first.extend(&landmarks(tiles, parts.parameters.dl, &first)?);
+        let maker = Tiled::new(parts, tiles, &watched, curves, first);
+        let (made, judged) = maker.mesh(progress)?;
         let failures = match judged.certificate.verdict() {
             Verdict::Verified => Vec::new(),
             _ => failures(&made.triangulation, &made.waist, maker.rows()),
         };
+        let mut report = Report {
+            chart_distortion: watched.distortion(),
+            ..parts.report_of_tiles(tiles, &watched, &made)
+        };
+        if let Some(found) = found {
+            let analysis = found.analysis;
+            report.mean_neighbors = analysis.mean_neighbors();
+            report.candidates = analysis.candidates();
+            report.curve_points = analysis.curve_points();
+            report.unexplained = analysis.unexplained().len();
+            report.models = analysis.models().to_vec();
+            report.plugins.estimator = Some(found.estimator.into());
+        }
         Ok(Outcome {
             failures,
             homology: judged.homology,
@@ -85,13 +224,20 @@ impl Pipeline {
             // They are read from all points.
             creases: None,
             special_points: judged.special_points,
-            report: Report {
-                chart_distortion: watched.distortion(),
-                seconds: progress.finish(),
-                ..parts.report_of_tiles(tiles, &watched, &made)
-            },
+            report,
             mesh: judged.mesh,
         })
+    }
+}
+
+impl Parts {
+    /// The balls that curves are looked for in.
+    fn balls(&self) -> BallQuestion {
+        BallQuestion {
+            eps: self.parameters.eps,
+            dt: self.parameters.dt,
+            least: self.tuning.analysis.least_neighbors,
+        }
     }
 }
 
@@ -107,20 +253,25 @@ impl Parts {
         let cells = p.method == Method::Cells && self.stratifier.name() == "cells";
         let random = self.selector.name() == "random";
         let alone = p.boundary.is_empty() && !finds_boundary;
-        let curves =
-            "since curves are not looked for in tiles (a cloud in memory is searched for them)";
+        let everywhere = (self.models.all().iter()).find(|m| !p.surface && m.applies_to(2));
         let taken = [
-            (
-                "surface",
-                p.surface,
-                p.surface.to_string(),
-                format!("true, {curves}"),
-            ),
             (
                 "boundary",
                 alone,
                 "looked for or given".into(),
-                format!("none, {curves}"),
+                "none, since boundaries are not looked for in tiles (a cloud in memory is searched for them)".into(),
+            ),
+            (
+                "models",
+                everywhere.is_none(),
+                everywhere.map_or(String::new(), |model| model.name().into()),
+                "models of curves in which sheets meet (two-planes): this one is asked about every point, which tiles are not".into(),
+            ),
+            (
+                "estimator",
+                self.estimator.is_none(),
+                "another".into(),
+                "none: tiles tell dimensions by principal components".into(),
             ),
             (
                 "metric",

@@ -41,21 +41,51 @@ fn a_cloud_that_does_not_fit_is_worked_on_in_tiles() {
     assert!(std::fs::read(room.path("m.npz")).unwrap() == mesh);
     assert_eq!(room.files(), ["m.npz", "p.npy", "r.json"]);
     // What tiles cannot do is refused before the work, with what would do.
-    room.run("reconstruct p.npy -o m.npz --memory-limit 258MiB")
+    room.run("reconstruct p.npy -o m.npz --surface --memory-limit 258MiB")
         .expect(2)
         .complains("looks at all points together")
-        .complains("--surface`")
+        .complains("--memory-limit 258MiB --eps ")
         .complains("else --memory-limit");
-    room.run("reconstruct p.npy -o m.npz --eps 0.6 --dl 0.3 --memory-limit 258MiB")
+    room.run("reconstruct p.npy -o m.npz --eps 0.6 --dl 0.3 --models auto --memory-limit 258MiB")
         .expect(2)
-        .complains("curves are not looked for in tiles")
-        .complains("--memory-limit 258MiB --surface`");
+        .complains("boundaries are not looked for in tiles")
+        .complains("--eps 0.6 --dl 0.3 and no other choice");
     room.run(&format!("{run} --metric geodesic --memory-limit 258MiB"))
         .expect(2)
         .complains("parameter metric");
     room.run(&format!("{run} --memory-limit 20MiB"))
         .expect(2)
         .complains("in tiles, too");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn crossings_are_worked_on_in_tiles() {
+    let room = Room::new();
+    // Two of the spheres cross.
+    let sphere = SampleSurface::find("sphere").unwrap();
+    let sphere = sphere.sample(&Sampling::new(40_000, 4)).unwrap().points;
+    let row = (0..12).flat_map(|k| {
+        let along = [0.0, 1.5][k.min(1)] + 4.0 * k.saturating_sub(1) as f64;
+        let places = sphere.iter();
+        places.flat_map(move |p| [p[0] + along, p[1], p[2] + 0.1 * along])
+    });
+    write_points(
+        room.path("p.npy"),
+        &PointCloud::new(3, row.collect()).unwrap(),
+    )
+    .unwrap();
+    let run = "reconstruct p.npy -o m.npz --eps 0.4 --dl 0.2 --threads 2";
+    room.run(run).expect(0).says("Betti numbers 11, 0, 13");
+    let mesh = std::fs::read(room.path("m.npz")).unwrap();
+    let limit = 325;
+    let tiled = room
+        .run(&format!("{run} --memory-limit {limit}MiB"))
+        .expect(0)
+        .complains("tiles on")
+        .says("(verified)");
+    assert!(held(&tiled) <= limit, "{}", tiled.err);
+    assert!(std::fs::read(room.path("m.npz")).unwrap() == mesh);
 }
 
 #[test]

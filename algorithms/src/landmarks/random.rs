@@ -66,9 +66,21 @@ fn shuffle<T>(order: &mut [T], seed: u64) {
 /// The place of every row in the order in which [`RandomGreedy`] looks at the rows of a cloud, where all of them are
 /// candidates.
 pub fn random_ranks(count: usize, seed: u64) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..count as u32).collect();
+    random_ranks_but(count, &[], seed)
+}
+
+/// Place of a row that is in no order.
+pub const BARRED: u32 = u32::MAX;
+
+/// The same where some rows, given in order, are no candidates: their place is [`BARRED`].
+pub fn random_ranks_but(count: usize, barred: &[u32], seed: u64) -> Vec<u32> {
+    let mut barred = barred.iter().copied().peekable();
+    let rows = 0..count as u32;
+    let mut order: Vec<u32> = rows
+        .filter(|&row| barred.next_if_eq(&row).is_none())
+        .collect();
     shuffle(&mut order, seed);
-    let mut ranks = vec![0; count];
+    let mut ranks = vec![BARRED; count];
     for (rank, row) in (0..).zip(order) {
         ranks[row as usize] = rank;
     }

@@ -76,14 +76,17 @@ pub(super) trait CurveEnd {
         }
     }
 
-    /// The decomposition of the neighborhood, and what is said of some of its rows.
+    /// The decomposition of the neighborhood, and what is said of some of its rows: nothing of one that would be moved onto a curve or
+    /// point by more than the radius. Rows behind those that are fitted may lie where the curve or a rim is mere extrapolation.
     fn decomposition(
         &self,
         local: &LocalPoints<'_>,
         rows: &[usize],
     ) -> (Decomposition, Vec<Option<Located>>) {
         let center = self.located(local.center);
-        let located = rows.iter().map(|&row| Some(self.located(row))).collect();
+        let near = |x: &Located| x.dimension == 2 || x.offset <= local.radius;
+        let located = rows.iter().map(|&row| Some(self.located(row)).filter(near));
+        let located = located.collect();
         let strata = self.strata().iter();
         let decomposition = Decomposition {
             strata: strata.map(|&dimension| Stratum { dimension }).collect(),
@@ -98,5 +101,61 @@ pub(super) trait CurveEnd {
             center_offset: center.offset,
         };
         (decomposition, located)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An end at the origin that takes every point for itself.
+    struct Greedy(Vec<Vector3<f64>>);
+
+    impl CurveEnd for Greedy {
+        fn strata(&self) -> &[u8] {
+            &[0, 1, 2]
+        }
+
+        fn cells(&self) -> &[u8] {
+            &[4]
+        }
+
+        fn parameters(&self) -> usize {
+            1
+        }
+
+        fn points(&self) -> &[Vector3<f64>] {
+            &self.0
+        }
+
+        fn end(&self) -> Vector3<f64> {
+            Vector3::zeros()
+        }
+
+        fn residual(&self) -> f64 {
+            0.0
+        }
+
+        fn ep(&self) -> f64 {
+            0.1
+        }
+
+        fn witness(&self) -> f64 {
+            2.0
+        }
+
+        fn locate(&self, _: usize) -> (u8, Vector3<f64>, u8) {
+            (0, Vector3::zeros(), 0)
+        }
+    }
+
+    #[test]
+    fn nothing_is_moved_by_more_than_the_radius() {
+        let coordinates = [0.0, 0.0, 0.0, 0.9, 0.0, 0.0, 1.2, 0.0, 0.0];
+        let local = super::super::about_first(&coordinates, 1.0);
+        let fit = Greedy(super::super::tolerance::vectors(&local));
+        let (_, located) = fit.decomposition(&local, &[1, 2]);
+        assert!(located[0].as_ref().is_some_and(|x| x.offset == 0.9));
+        assert!(located[1].is_none(), "{located:?}");
     }
 }

@@ -19,8 +19,10 @@ pub(super) fn choose<S: Scalar>(
     dl: f64,
     seed: u64,
 ) -> Result<Vec<Row>, Error> {
-    let candidates = free_of_edges(analyzer, strata, skeleton);
-    let innermost = curve_ends::innermost(strata, analyzer.tuning.ends.innermost * dl);
+    let barred = barred(analyzer, strata, skeleton);
+    let free = barred.each().filter(|x| !x.1);
+    let candidates: Vec<usize> = free.map(|x| x.0.index()).collect();
+    let innermost = innermost(analyzer, strata, dl);
     let taken = skeleton.rows().iter().chain(&innermost);
     let taken: &Vec<usize> = &taken.map(|row| row.index()).collect();
     let oracle = analyzer.space.oracle();
@@ -36,15 +38,25 @@ pub(super) fn choose<S: Scalar>(
     Ok(innermost.into_iter().chain(chosen).collect())
 }
 
-/// Regular rows outside the diametral ball of every chain edge: a landmark inside it would
+/// Landmarks next to the ends of curves, which are there before any is chosen.
+pub(super) fn innermost<S: Scalar>(
+    analyzer: &Analyzer<'_, S>,
+    strata: &Strata,
+    dl: f64,
+) -> Vec<Row> {
+    curve_ends::innermost(strata, analyzer.tuning.ends.innermost * dl)
+}
+
+/// Whether a row cannot be chosen: it is on a curve, or in the diametral ball of a chain edge, where a landmark would
 /// make the edge no edge of a Delaunay triangulation, and on a convex boundary may even lie
 /// beyond it.
-fn free_of_edges<S: Scalar>(
+pub(super) fn barred<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
     strata: &Strata,
     skeleton: &Skeleton,
-) -> Vec<usize> {
-    let mut barred: Table<Row, bool> = Table::filled(strata.len(), false);
+) -> Table<Row, bool> {
+    let regular = strata.rows().map(|row| strata.is_regular(row));
+    let mut barred: Table<Row, bool> = regular.map(|regular| !regular).collect();
     if let Some(places) = strata.places() {
         let mut near = Vec::new();
         for e in skeleton.edges().iter().filter(|e| e.cells > 0) {
@@ -61,8 +73,5 @@ fn free_of_edges<S: Scalar>(
             }
         }
     }
-    (strata.rows())
-        .filter(|&i| strata.is_regular(i) && !barred[i])
-        .map(Row::index)
-        .collect()
+    barred
 }

@@ -19,6 +19,7 @@ mod cells;
 mod charts;
 mod curve_ends;
 mod distances;
+mod in_part;
 mod landmarks;
 mod producer;
 mod published;
@@ -33,7 +34,7 @@ mod waist;
 pub use crate::tuning::{
     AnalysisTuning, CellTuning, EndTuning, RefinementTuning, SkeletonTuning, Tuning,
 };
-pub use analysis::{Analysis, AnalysisOptions, Analyzer, ModelCounts};
+pub use analysis::{Analysis, AnalysisOptions, Analyzer, KnownBalls, ModelCounts};
 pub use charts::ChartSpace;
 pub use producer::WaistProducer;
 pub use published::{Published, PublishedCut, PublishedMethod};

@@ -2,7 +2,7 @@
 
 use super::analysis::{Analysis, Analyzer};
 use super::atlas::Reference;
-use super::cells::{Contacts, Labels, Neighborhoods};
+use super::cells::{Contacts, Found, Labels, Neighborhoods};
 use super::charts::ChartSpace;
 use super::curve_ends;
 use super::distances::within_charts;
@@ -10,7 +10,7 @@ use super::landmarks;
 use super::producer::WaistProducer;
 use super::skeleton::Skeleton;
 use super::strata::Strata;
-use super::stratification::Stratification;
+use super::stratification::{PointStratum, Stratification};
 use crosscap_core::{
     CellNeighborhood, Error, Landmark, LandmarkSelector, PointCloud, Row, Scalar,
     StratifiedLandmarks, Table, positive_length,
@@ -39,14 +39,14 @@ impl StratifyOptions {
 /// Strata, skeleton and chosen landmarks are made once; [`waist`](WaistProducer::waist) describes the
 /// surroundings of every landmark.
 pub struct Cut<'a, 'p, S: Scalar> {
-    analyzer: &'p Analyzer<'a, S>,
-    strata: Strata,
-    skeleton: Skeleton,
+    pub(super) analyzer: &'p Analyzer<'a, S>,
+    pub(super) strata: Strata,
+    pub(super) skeleton: Skeleton,
     labels: Labels,
-    contacts: Contacts,
+    pub(super) contacts: Contacts,
     chosen: Vec<Row>,
     charts: ChartSpace<'a, S>,
-    options: StratifyOptions,
+    pub(super) options: StratifyOptions,
 }
 
 impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
@@ -64,6 +64,28 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         selector: &dyn LandmarkSelector<Scalar = S>,
         options: &StratifyOptions,
     ) -> Result<Self, Error> {
+        let mut cut = Self::laid(analyzer, analysis, charts, options)?;
+        cut.chosen = landmarks::choose(
+            analyzer,
+            &cut.strata,
+            &cut.skeleton,
+            selector,
+            options.dl,
+            options.seed,
+        )?;
+        Ok(cut)
+    }
+
+    /// The same without landmarks in cells, which somebody else chooses.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new) but the selector's.
+    pub fn laid(
+        analyzer: &'p Analyzer<'a, S>,
+        analysis: &Analysis,
+        charts: ChartSpace<'a, S>,
+        options: &StratifyOptions,
+    ) -> Result<Self, Error> {
         options.check()?;
         if let ChartSpace::Metric(space) = &charts {
             space.audit_metric()?;
@@ -79,7 +101,6 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         let mut strata = Strata::of(analysis, space.places(), gap, dl);
         curve_ends::explain(analyzer, analysis, &mut strata)?;
         let skeleton = Skeleton::lay(analyzer, &strata, dl)?;
-        let chosen = landmarks::choose(analyzer, &strata, &skeleton, selector, dl, options.seed)?;
         let fits: Vec<&Reference> = skeleton.labelling().collect();
         let reach = tuning.cells.label_reach;
         let labels = Labels::new(strata.len(), strata.places(), &fits, reach, *execute);
@@ -90,7 +111,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
             labels,
             contacts,
             skeleton,
-            chosen,
+            chosen: Vec::new(),
             charts,
             options: options.clone(),
         })
@@ -131,21 +152,21 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         })
     }
 
-    /// The neighborhoods of some of the landmarks of a surface without curves.
+    /// The neighborhoods of some of the landmarks of a surface without curves, and how wide their charts are.
     ///
     /// # Errors
     /// [`Error::Law`] for what a plug-in breaks.
     pub(crate) fn neighborhoods(
         &self,
         wanted: &Table<Landmark, bool>,
-    ) -> Result<Vec<CellNeighborhood>, Error> {
+    ) -> Result<(Vec<CellNeighborhood>, Vec<f64>), Error> {
         let rows = self.rows(&[]);
-        let (found, _) = self.around(&rows).find(&|k| wanted[k])?;
-        Ok(found)
+        let found = self.around(&rows).find(&|k| wanted[k])?;
+        Ok((found.neighborhoods, found.radii))
     }
 
     /// What the neighborhoods of landmarks are found from.
-    fn around<'n>(&'n self, rows: &'n Table<Landmark, Row>) -> Neighborhoods<'n, 'a, S> {
+    pub(super) fn around<'n>(&'n self, rows: &'n Table<Landmark, Row>) -> Neighborhoods<'n, 'a, S> {
         Neighborhoods {
             analyzer: self.analyzer,
             strata: &self.strata,
@@ -185,11 +206,12 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
 
     fn waist(&self, extra: &[Row]) -> Result<Stratification<S>, Error> {
         let rows = self.rows(extra);
-        let on_curves = self.skeleton.rows().len();
-        let mut strata = Table::filled(rows.len(), 2);
-        strata.as_mut_slice()[..on_curves].fill(1);
-        strata.as_mut_slice()[..self.skeleton.corners()].fill(0);
-        let (neighborhoods, cut_edges) = self.around(&rows).find(&|_| true)?;
+        let strata = self.dimensions(rows.len());
+        let Found {
+            neighborhoods,
+            cut_edges,
+            ..
+        } = self.around(&rows).find(&|_| true)?;
         let distances = within_charts(
             self.analyzer,
             &self.strata,
@@ -201,7 +223,22 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
         let waist = StratifiedLandmarks::new(strata, edges, neighborhoods, distances)?;
         let mut out = Stratification::new(waist, rows);
         out.counts.cut_edges = cut_edges;
-        out.points = (self.skeleton).points(&self.strata, self.analyzer.models);
+        out.points = self.points();
         Ok(out)
+    }
+}
+
+impl<S: Scalar> Cut<'_, '_, S> {
+    /// Dimensions of the strata that so many landmarks are on, those of the skeleton first.
+    pub(crate) fn dimensions(&self, landmarks: usize) -> Table<Landmark, u8> {
+        let mut strata = Table::filled(landmarks, 2);
+        strata.as_mut_slice()[..self.skeleton.rows().len()].fill(1);
+        strata.as_mut_slice()[..self.skeleton.corners()].fill(0);
+        strata
+    }
+
+    /// The points that models call 0-strata.
+    pub(crate) fn points(&self) -> Vec<PointStratum> {
+        (self.skeleton).points(&self.strata, self.analyzer.models)
     }
 }

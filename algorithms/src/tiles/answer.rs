@@ -1,14 +1,19 @@
 //! What a tile answers.
 
+use super::balls;
 use super::cells;
 use super::gathered::Gathered;
 use super::greedy;
 use super::question::{Answer, BehindQuestion, Question};
 use super::tile::{ROUNDING, Tile};
+use crate::balls::BallTree;
 use crate::certificate::distances_to_mesh;
 use crate::execute::Serial;
 use crate::tuning::CellTuning;
 use crosscap_core::{Complex, Error, Mesh, PointCloud, Row, squared_distance};
+
+/// With so many places about which points are looked for, or more, points are gone through instead of places.
+const MANY_PLACES: usize = 1000;
 
 impl Tile {
     /// The answer to a question.
@@ -32,7 +37,12 @@ impl Tile {
             Question::Cells(cells) => {
                 let reach = cells::halo(cells.dl, cells.tri_eps, &cells.tuning);
                 self.reaches("tri_eps", reach)?;
-                Answer::Cells(cells::neighborhoods(self, cells)?)
+                let (found, radii) = cells::neighborhoods(self, cells)?;
+                Answer::Cells(found, radii)
+            }
+            Question::Balls(balls) => {
+                self.reaches("eps", balls.eps)?;
+                Answer::Balls(balls::of_tile(self, balls)?)
             }
             Question::Nearest { places, alone } => self.nearest(&self.list(places)?, *alone),
             Question::Around { places, radius } => {
@@ -112,19 +122,22 @@ impl Tile {
 
     fn around(&self, places: &PointCloud<f64>, radius: f64) -> Gathered {
         let mut found = vec![false; self.len()];
-        let near = places
-            .iter()
-            .filter(|place| self.bounds().reach(place, radius));
-        for place in near {
-            self.tree()
-                .within(place, radius * (1.0 + ROUNDING), |row, _| {
-                    found[row as usize] = true;
-                });
+        let reach = radius * (1.0 + ROUNDING);
+        let near = (places.iter()).filter(|place| self.bounds().reach(place, radius));
+        let near: Vec<&[f64]> = near.collect();
+        if near.len() < MANY_PLACES {
+            for place in near {
+                (self.tree()).within(place, reach, |row, _| found[row as usize] = true);
+            }
+        } else {
+            // Whose balls overlap: a point is asked once.
+            let tree = BallTree::new(places.dimension(), &near.concat());
+            for row in self.ids() {
+                found[row.index()] = tree.any_within(self.place(row), reach, |_, _| true);
+            }
         }
-        self.gathered(
-            self.ids()
-                .filter(|&row| found[row.index()] && self.owns(row)),
-        )
+        let own = self.ids().filter(|&row| found[row.index()]);
+        self.gathered(own.filter(|&row| self.owns(row)))
     }
 }
 
@@ -133,7 +146,8 @@ impl Tile {
     /// [`Error::SparseNeighborhood`] where the nearest others of a point may be beyond the halo; those of a mesh that is none.
     fn behind(&self, question: &BehindQuestion) -> Result<Gathered, Error> {
         let vertices = self.list(&question.vertices)?;
-        let complex = Complex::new(vertices.len(), question.triangles.clone(), Vec::new())?;
+        let triangles = question.triangles.clone();
+        let complex = Complex::new(vertices.len(), triangles, question.curve_edges.clone())?;
         let named = vec![-1; vertices.len()];
         let heights = distances_to_mesh(&Mesh::new(complex, vertices, named)?, self.points());
         let far = |row: Row| self.owns(row) && heights[row.index()] > question.far;

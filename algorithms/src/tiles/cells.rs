@@ -1,4 +1,4 @@
-//! Neighborhoods of landmarks, tile by tile, on a surface without curves.
+//! Neighborhoods of landmarks, tile by tile, where no curves are near.
 
 use super::question::CellQuestion;
 use super::tile::{ROUNDING, Tile};
@@ -20,14 +20,14 @@ pub(super) fn halo(dl: f64, tri_eps: f64, tuning: &CellTuning) -> f64 {
     (widest + dl) * (1.0 + ROUNDING)
 }
 
-/// The neighborhoods of the landmarks in the box.
+/// The neighborhoods of the landmarks in the box but for those that are cut elsewhere, and how wide their charts are.
 ///
 /// # Errors
 /// [`Error::SparseNeighborhood`] where so few points are near one that its nearest neighbors may be beyond the halo.
 pub(super) fn neighborhoods(
     tile: &Tile,
     question: &CellQuestion,
-) -> Result<Vec<CellNeighborhood>, Error> {
+) -> Result<(Vec<CellNeighborhood>, Vec<f64>), Error> {
     // Landmarks that are not in the tile are too far away to matter. Those that are keep their order, which breaks ties.
     let mut known: Vec<Landmark> = Vec::new();
     let mut rows: Vec<Row> = Vec::new();
@@ -37,9 +37,11 @@ pub(super) fn neighborhoods(
             rows.push(row);
         }
     }
-    let own: Table<Landmark, bool> = rows.iter().map(|&row| tile.owns(row)).collect();
+    let wanted = |k: &Landmark| question.elsewhere.binary_search(k).is_err();
+    let own = rows.iter().zip(&known);
+    let own: Table<Landmark, bool> = own.map(|(&row, k)| tile.owns(row) && wanted(k)).collect();
     if !own.iter().any(|&own| own) {
-        return Ok(Vec::new());
+        return Ok(Default::default());
     }
     let metric = Euclidean::new(tile.points().clone());
     let oracle = UpToHalo {
@@ -65,7 +67,7 @@ pub(super) fn neighborhoods(
         seed: 0,
     };
     let cut = Cut::among(&analyzer, ChartSpace::Places, rows, &options)?;
-    let found = cut.neighborhoods(&own)?;
+    let (found, radii) = cut.neighborhoods(&own)?;
     if let Some(short) = oracle.short.into_inner() {
         return Err(short);
     }
@@ -74,7 +76,7 @@ pub(super) fn neighborhoods(
         let members = one.members().iter().copied().map(name);
         CellNeighborhood::new(name(one.center()), members)
     });
-    Ok(named.collect())
+    Ok((named.collect(), radii))
 }
 
 /// Nearest neighbors among the points of a tile, as far as it can know them.

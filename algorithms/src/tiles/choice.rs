@@ -4,16 +4,17 @@ use super::gathered::Gathered;
 use super::question::{Answer, Question, Tiles};
 use crosscap_core::Error;
 
-/// The landmarks of a surface without curves, in the order in which a greedy choice takes them: what
-/// [`RandomGreedy`](crate::landmarks::RandomGreedy) chooses among all points of the cloud, with the seed of the tiles.
+/// The landmarks in cells, in the order in which a greedy choice takes them: what
+/// [`RandomGreedy`](crate::landmarks::RandomGreedy) chooses among all points of the cloud that are not barred, with the seed of the tiles, beside
+/// some landmarks that are `there`.
 ///
 /// Tiles are asked until nothing is open, which takes a handful of rounds: as many as there are tiles that chains of points
 /// that wait for each other pass through.
 ///
 /// # Errors
 /// Those of [`Tiles::ask`]; [`Error::Shape`] where rounds decide nothing, as tiles that do not hold all points do.
-pub fn landmarks(tiles: &dyn Tiles, separation: f64) -> Result<Gathered, Error> {
-    let mut taken = Gathered::new(tiles.dimension());
+pub fn landmarks(tiles: &dyn Tiles, separation: f64, there: &Gathered) -> Result<Gathered, Error> {
+    let mut taken = there.clone();
     let mut ranks: Vec<u32> = Vec::new();
     loop {
         let known = taken.len();
@@ -44,10 +45,11 @@ pub fn landmarks(tiles: &dyn Tiles, separation: f64) -> Result<Gathered, Error> 
             });
         }
     }
-    let mut order: Vec<usize> = (0..taken.len()).collect();
+    let first = there.len();
+    let mut order: Vec<usize> = (0..ranks.len()).collect();
     order.sort_unstable_by_key(|&k| ranks[k]);
     let mut sorted = Gathered::new(tiles.dimension());
-    for k in order {
+    for k in order.into_iter().map(|k| first + k) {
         sorted.push(taken.rows()[k], taken.place(k));
     }
     Ok(sorted)

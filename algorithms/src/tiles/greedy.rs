@@ -20,7 +20,7 @@ enum State {
     Doubtful,
     /// It may be a landmark: what is close to it is not known, or in doubt.
     Unknown,
-    /// It is a landmark, or close to one.
+    /// It is a landmark, close to one, or barred.
     Decided,
 }
 
@@ -35,7 +35,11 @@ pub(super) struct Round {
 /// Decides what follows from the landmarks that are known, `taken`, and from the points of the tile, at a separation that
 /// is less than the halo.
 pub(super) fn round(tile: &Tile, separation: f64, taken: &Gathered) -> Round {
-    let mut states: Table<Row, State> = Table::filled(tile.len(), State::Open);
+    let state = |row: Row| match tile.is_barred(row) {
+        true => State::Decided,
+        false => State::Open,
+    };
+    let mut states: Table<Row, State> = tile.ids().map(state).collect();
     let reach = tile.halo() + separation;
     for (_, place) in taken.each().filter(|x| tile.bounds().reach(x.1, reach)) {
         tile.within(place, separation, |row| states[row] = State::Decided);

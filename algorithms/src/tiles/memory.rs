@@ -5,12 +5,14 @@ use super::row::CloudRow;
 use super::tile::Tile;
 use super::tiling::{TileId, Tiling};
 use crate::execute::{self, Execute};
-use crate::landmarks::random_ranks;
+use crate::landmarks::{random_ranks, random_ranks_but};
 use crosscap_core::{Error, PointCloud, Table};
+use std::sync::{PoisonError, RwLock};
 
 /// The tiles of a cloud in memory, asked side by side.
 pub struct TilesInMemory<'a> {
-    tiles: Vec<Tile>,
+    tiles: RwLock<Vec<Tile>>,
+    seed: u64,
     points: usize,
     dimension: usize,
     halo: f64,
@@ -45,7 +47,8 @@ impl<'a> TilesInMemory<'a> {
             )
         });
         Ok(Self {
-            tiles: tiles.collect::<Result<_, _>>()?,
+            tiles: RwLock::new(tiles.collect::<Result<_, _>>()?),
+            seed,
             points: cloud.len(),
             dimension: cloud.dimension(),
             halo,
@@ -67,10 +70,21 @@ impl Tiles for TilesInMemory<'_> {
         self.halo
     }
 
+    fn bar(&self, rows: &[CloudRow]) -> Result<(), Error> {
+        let barred: Vec<u32> = rows.iter().map(|row| row.index() as u32).collect();
+        let ranks = random_ranks_but(self.points, &barred, self.seed);
+        let mut tiles = self.tiles.write().unwrap_or_else(PoisonError::into_inner);
+        for tile in tiles.iter_mut() {
+            let own = tile.rows().iter().map(|row| ranks[row.index()]);
+            let own = own.collect();
+            tile.rank_anew(own);
+        }
+        Ok(())
+    }
+
     fn ask(&self, question: &Question) -> Result<Vec<Answer>, Error> {
-        let answers = execute::few(self.execute, self.tiles.len(), |k| {
-            self.tiles[k].answer(question)
-        });
+        let tiles = self.tiles.read().unwrap_or_else(PoisonError::into_inner);
+        let answers = execute::few(self.execute, tiles.len(), |k| tiles[k].answer(question));
         answers.into_iter().collect()
     }
 }

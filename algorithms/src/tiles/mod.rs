@@ -8,16 +8,21 @@
 //! | question | depends on points up to |
 //! | --- | --- |
 //! | which points are landmarks, given some that are ([`landmarks`] asks until all are known) | dl |
-//! | the neighborhoods of landmarks, on a surface without curves | the widest chart and dl |
+//! | which balls are not 2-dimensional | eps |
+//! | the neighborhoods of landmarks that no curve is near | the widest chart and dl |
 //! | the nearest point of a place | the halo; whoever is farther from all points is asked about again, by all tiles |
 //!
 //! A tile keeps nothing between questions, and whoever has the tiles is [`Tiles`]: this process ([`TilesInMemory`]), or workers that may
-//! die and be replaced. Curves are not in here: fits are made in an order that all candidates decide together, and curves are laid over all
-//! points on them. Whether a ball is 2-dimensional is a matter of the ball alone (`moments`).
+//! die and be replaced. Curves are not told tile by tile: fits are made in an order that all candidates decide together, and curves are laid over all
+//! points on them. They depend on the points about balls that are not 2-dimensional alone, which are gathered in one place: an [`Excerpt`], in which
+//! [`Curves`] are what they are in the whole cloud.
 
 mod answer;
+mod balls;
 mod cells;
 mod choice;
+mod curves;
+mod excerpt;
 mod gathered;
 mod greedy;
 mod memory;
@@ -31,9 +36,13 @@ mod tests;
 
 pub use answer::halo;
 pub use choice::landmarks;
+pub use curves::{Curves, NearCurves};
+pub use excerpt::{Candidates, Excerpt, WatchedOracle};
 pub use gathered::Gathered;
 pub use memory::TilesInMemory;
-pub use question::{Answer, BehindQuestion, CellQuestion, Question, Tiles};
+pub use question::{
+    Answer, BallQuestion, BallsOfTile, BehindQuestion, CellQuestion, Question, Tiles,
+};
 pub use row::CloudRow;
 pub use tile::Tile;
 pub use tiling::{Bounds, TileId, Tiling};

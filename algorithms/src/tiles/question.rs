@@ -3,7 +3,7 @@
 use super::gathered::{Gathered, lost};
 use super::row::CloudRow;
 use crate::tuning::CellTuning;
-use crosscap_core::{CellNeighborhood, Error};
+use crosscap_core::{CellNeighborhood, CurveEdge, Error, Landmark};
 use serde::{Deserialize, Serialize};
 
 /// A question that every tile is asked. It holds all that is needed beside the points, so that a tile keeps nothing from
@@ -22,6 +22,8 @@ pub enum Question {
     },
     /// The neighborhoods of the landmarks in the box. Answered by [`Answer::Cells`].
     Cells(CellQuestion),
+    /// Which points in the box have a ball that is not 2-dimensional. Answered by [`Answer::Balls`].
+    Balls(BallQuestion),
     /// The nearest point of each of some places, and others that are as near within rounding; for places in the box, of
     /// all points of the cloud that the tile knows. With `alone` for all places, of the points in the box.
     Nearest {
@@ -50,10 +52,23 @@ pub struct BehindQuestion {
     pub vertices: Vec<f64>,
     /// The triangles.
     pub triangles: Vec<[u32; 3]>,
+    /// Edges along curves.
+    pub curve_edges: Vec<CurveEdge>,
     /// Distance from which a point is far, unit of the data.
     pub far: f64,
     /// How many of its nearest others are wanted.
     pub company: usize,
+}
+
+/// Which balls are asked about, and when they count as 2-dimensional, by principal components.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BallQuestion {
+    /// Their radius (strict), unit of the data.
+    pub eps: f64,
+    /// Share of the variance that may lie outside the dimension (strict).
+    pub dt: f64,
+    /// Fewest points, the center among them, that a ball must hold.
+    pub least: usize,
 }
 
 /// What neighborhoods depend on beside the points.
@@ -61,6 +76,8 @@ pub struct BehindQuestion {
 pub struct CellQuestion {
     /// All landmarks, in their order.
     pub landmarks: Vec<CloudRow>,
+    /// Those whose neighborhoods are not wanted, in order: curves come near them.
+    pub elsewhere: Vec<Landmark>,
     /// Landmark separation dl, unit of the data.
     pub dl: f64,
     /// Radius of the charts, unit of the data.
@@ -83,8 +100,10 @@ pub enum Answer {
         /// How many points in the box are neither landmarks nor close to one, as far as is known.
         open: usize,
     },
-    /// Neighborhoods.
-    Cells(Vec<CellNeighborhood>),
+    /// Neighborhoods, and the radii of their charts, unit of the data.
+    Cells(Vec<CellNeighborhood>, Vec<f64>),
+    /// Balls.
+    Balls(BallsOfTile),
     /// Nearest points of places, in no order, and the numbers of those places in the box whose nearest point may be
     /// beyond the halo.
     Nearest {
@@ -93,6 +112,19 @@ pub enum Answer {
         /// Places without an answer.
         beyond: Vec<u32>,
     },
+}
+
+/// The balls of the points in a box.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BallsOfTile {
+    /// The points whose balls are not 2-dimensional.
+    pub centers: Gathered,
+    /// How many points these balls hold, and their dimensions.
+    pub balls: Vec<[u32; 2]>,
+    /// Sum of the numbers of points of all balls of the box; of 2-dimensional ones it may be the number of a ball close by.
+    pub neighbors: u64,
+    /// The first point whose ball holds fewer points than it must, and how many.
+    pub sparse: Option<(CloudRow, u32)>,
 }
 
 /// Whoever has the tiles of a cloud: threads of this process, or other machines.
@@ -115,6 +147,13 @@ pub trait Tiles {
     fn left_out(&self) -> usize {
         0
     }
+
+    /// Makes the random order of the points anew, without some rows of the cloud, given in order, which cannot be landmarks
+    /// then: [`random_ranks_but`](crate::landmarks::random_ranks_but) of all points.
+    ///
+    /// # Errors
+    /// What keeps tiles from being made anew.
+    fn bar(&self, rows: &[CloudRow]) -> Result<(), Error>;
 
     /// The answers of all tiles to a question, in any order that is the same at every call.
     ///

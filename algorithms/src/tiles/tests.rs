@@ -30,16 +30,21 @@ proptest! {
 
     #[test]
     fn landmarks_are_those_of_the_whole_cloud_whatever_the_tiles(
-        count in 1_usize..500, tiles in 1_usize..12, share in 1.0..6.0_f64, dl in 0.05..0.4_f64, seed in any::<u64>(),
+        count in 1_usize..500, tiles in 1_usize..12, share in 1.0..6.0_f64, dl in 0.05..0.4_f64, seed in any::<u64>(), barred in 0_usize..4,
     ) {
         let cloud = bumpy(count, seed);
         let whole = Euclidean::new(cloud.clone());
         let oracle = BruteForceOracle::new(&whole);
-        let all: Vec<usize> = (0..count).collect();
-        let expected = RandomGreedy::new().select(&oracle, &all, &[], dl, seed).unwrap();
+        // A third of the rows cannot be chosen, and some of these are landmarks already.
+        let free: Vec<usize> = (0..count).filter(|row| row % 3 != barred).collect();
+        let there: Vec<usize> = (0..count).filter(|row| row % 3 == barred && row % 5 == 0).collect();
+        let expected = RandomGreedy::new().select(&oracle, &free, &there, dl, seed).unwrap();
         let tiling = Tiling::new(&cloud, tiles);
         let held = TilesInMemory::new(&cloud, &tiling, share * dl, seed, &Serial).unwrap();
-        let found = landmarks(&held, dl).unwrap();
+        let rows: Vec<CloudRow> = (0..count).filter(|row| row % 3 == barred).map(CloudRow::new).collect();
+        held.bar(&rows).unwrap();
+        let taken = held.rows(there.into_iter().map(CloudRow::new).collect()).unwrap();
+        let found = landmarks(&held, dl, &taken).unwrap();
         let rows: Vec<usize> = found.rows().iter().map(|row| row.index()).collect();
         prop_assert_eq!(rows, expected);
     }
@@ -59,6 +64,9 @@ proptest! {
         }
         let around = Question::Around { places: places.clone(), radius: 1.2 };
         let found = held.gather(&around).unwrap();
+        // Of so many that points are gone through instead.
+        let many = Question::Around { places: places.repeat(200), radius: 1.2 };
+        prop_assert_eq!(&held.gather(&many).unwrap(), &found);
         let near = |row: &usize| places.chunks_exact(3)
             .any(|place| crosscap_core::squared_distance(place, cloud.point(*row)).sqrt() < 1.2);
         let expected: Vec<usize> = (0..count).filter(near).collect();
@@ -80,9 +88,10 @@ fn neighborhoods_are_the_same_whatever_the_tiles() {
         let told = |tiles: usize| {
             let tiling = Tiling::new(cloud, tiles);
             let held = TilesInMemory::new(cloud, &tiling, reach, 5, &Serial).unwrap();
-            let chosen = landmarks(&held, dl).unwrap();
+            let chosen = landmarks(&held, dl, &Gathered::new(cloud.dimension())).unwrap();
             let question = Question::Cells(CellQuestion {
                 landmarks: chosen.rows().to_vec(),
+                elsewhere: Vec::new(),
                 dl,
                 tri_eps: 3.0 * dl,
                 tuning: CellTuning::MEASURED,
@@ -90,7 +99,7 @@ fn neighborhoods_are_the_same_whatever_the_tiles() {
             let mut all = Vec::new();
             for answer in held.ask(&question).unwrap() {
                 match answer {
-                    Answer::Cells(cells) => all.extend(cells),
+                    Answer::Cells(cells, _) => all.extend(cells),
                     other => panic!("{other:?}"),
                 }
             }
@@ -111,7 +120,7 @@ fn copies_are_found_and_a_halo_that_is_too_small_is_told() {
     let held = TilesInMemory::new(&cloud, &Tiling::new(&cloud, 2), 0.5, 0, &Serial).unwrap();
     let copies = held.gather(&Question::Copies).unwrap();
     assert_eq!(copies.rows(), [2, 3, 4].map(CloudRow::new));
-    let error = landmarks(&held, 0.6).unwrap_err();
+    let error = landmarks(&held, 0.6, &Gathered::new(2)).unwrap_err();
     assert!(error.to_string().contains("halo"), "{error}");
     assert!(held.rows(vec![CloudRow::new(7)]).is_err());
 }

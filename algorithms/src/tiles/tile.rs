@@ -4,6 +4,7 @@ use super::gathered::Gathered;
 use super::row::CloudRow;
 use super::tiling::Bounds;
 use crate::balls::BallTree;
+use crate::landmarks::BARRED;
 use crosscap_core::{Error, PointCloud, Row, Table, positive_length, squared_distance};
 
 /// Squared distances that are summed in another order differ by less than this share.
@@ -17,14 +18,14 @@ pub struct Tile {
     halo: f64,
     points: PointCloud<f64>,
     rows: Table<Row, CloudRow>,
-    /// Place of every point in a random order of the whole cloud.
+    /// Place of every point in a random order of the whole cloud, [`BARRED`] where it is in none.
     ranks: Table<Row, u32>,
     tree: BallTree,
 }
 
 impl Tile {
     /// The tile of a box: all `points` of the cloud up to `halo` away from it, the rows of the cloud that they are, in
-    /// order, and their places in a random order of the cloud.
+    /// order, and their places in a random order of the cloud, [`BARRED`] for points that cannot be landmarks.
     ///
     /// # Errors
     /// [`Error::Shape`] for lists that do not belong together, or rows that are not in order;
@@ -102,6 +103,21 @@ impl Tile {
 
     pub(super) fn rank(&self, row: Row) -> u32 {
         self.ranks[row]
+    }
+
+    /// Whether a point cannot be a landmark.
+    pub(super) fn is_barred(&self, row: Row) -> bool {
+        self.ranks[row] == BARRED
+    }
+
+    /// The rows of the cloud that the points are, in order.
+    pub(super) fn rows(&self) -> &[CloudRow] {
+        self.rows.as_slice()
+    }
+
+    /// Gives the points other places in a random order.
+    pub(super) fn rank_anew(&mut self, ranks: Table<Row, u32>) {
+        self.ranks = ranks;
     }
 
     /// The row of the tile that is a row of the cloud; `None` where the tile does not have it. O(log n).

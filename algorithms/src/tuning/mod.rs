@@ -171,6 +171,9 @@ pub struct EndTuning {
     pub breaks_off: f64,
     /// How far ahead of such a point the boundary is looked for in smaller balls.
     pub continues: f64,
+    /// Radii of the balls in which it is looked for. In balls of 0.42 and 0.32 there are some 20 and 12 points, and a boundary strayed into
+    /// the sheet at chance gaps of Henneberg's surface.
+    pub continued_in: [f64; 2],
 }
 
 impl EndTuning {
@@ -191,6 +194,7 @@ impl EndTuning {
         corner_reach: 1.5,
         breaks_off: 0.3,
         continues: 0.5,
+        continued_in: [0.75, 0.56],
     };
 }
 

@@ -27,8 +27,10 @@ class Here:
         return [function(_loaded(c), *a) for c, a in zip(chunks, arguments, strict=True)]
 
     def tiles(self, chunks, arguments, count):
-        """Makes `count` tiles of what `split` says of every chunk."""
+        """Makes `count` tiles of what `split` says of every chunk, in the place of those that are there."""
         folder = Path(self._folder.name)
+        for file in folder.iterdir():
+            file.unlink()
         tiles = [[folder / f"{number}.{part}" for part in range(3)] for number in range(count)]
         width = 0
         for chunk, own in zip(chunks, arguments, strict=True):

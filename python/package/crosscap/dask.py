@@ -24,6 +24,7 @@ def reconstruct(
     dl,
     *,
     surface=False,
+    models=("two-planes",),
     tri_eps=None,
     tiles=None,
     random_state=0,
@@ -31,10 +32,10 @@ def reconstruct(
     client=None,
     verbose=False,
 ):
-    """Reconstruct a surface that does not cross itself from points that workers hold.
+    """Reconstruct a surface that may cross itself from points that workers hold.
 
-    In one place there are the landmarks and their mesh, the 200,000 points that the certificate looks at one by one, and four
-    bytes for every point.
+    In one place there are the landmarks and their mesh, the 200,000 points that the certificate looks at one by one, the points about
+    curves, and four bytes for every point.
 
     Parameters
     ----------
@@ -42,8 +43,10 @@ def reconstruct(
         The points: an array of Dask, in chunks of rows; the path of an ``.npy``, ``.parquet`` or ``.h5`` file, or of a folder of them, chunks in
         the order of their names, which all workers can read (pyarrow and h5py read the latter two); a memory-mapped array, likewise. No two points at one place.
     eps, dl, tri_eps, surface, random_state, on_refusal, verbose
-        As in :class:`crosscap.SurfaceReconstruction`. Lengths have to be given, and ``surface`` has to be true: curves are
-        not looked for in tiles.
+        As in :class:`crosscap.SurfaceReconstruction`. Lengths have to be given.
+    models : sequence of str, optional
+        Names of models of curves in which sheets meet, or which bound no surface. Boundaries are not looked for in tiles, nor is what has to be asked
+        about at every point.
     tiles : int, optional
         Number of tiles; by the size of the cloud when left out. It changes no result.
     client : distributed.Client, optional
@@ -69,6 +72,7 @@ def reconstruct(
         eps,
         dl,
         surface=surface,
+        models=models,
         tri_eps=tri_eps,
         tiles=tiles,
         random_state=random_state,

@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 from typing import Any, Literal
 
 from . import LocalDimension, SurfaceReconstruction
@@ -10,6 +11,7 @@ def reconstruct(
     dl: float,
     *,
     surface: bool = False,
+    models: Sequence[str] = ("two-planes",),
     tri_eps: float | None = None,
     tiles: int | None = None,
     random_state: Any = 0,

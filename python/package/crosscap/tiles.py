@@ -23,6 +23,7 @@ def reconstruct(
     dl,
     *,
     surface=False,
+    models=("two-planes",),
     tri_eps=None,
     tiles=None,
     random_state=0,
@@ -31,13 +32,13 @@ def reconstruct(
     folder=None,
     verbose=False,
 ):
-    """Reconstruct a surface that does not cross itself from points in files.
+    """Reconstruct a surface that may cross itself from points in files.
 
     Parameters
     ----------
     points : path, memmap, array or dask array of shape (n_points, n_dimensions)
         The points, as :func:`crosscap.dask.reconstruct` takes them.
-    eps, dl, tri_eps, surface, random_state, on_refusal, verbose
+    eps, dl, tri_eps, surface, models, random_state, on_refusal, verbose
         As there.
     tiles : int, optional
         Number of tiles; by the size of the cloud when left out. It changes no result.
@@ -58,6 +59,7 @@ def reconstruct(
         eps,
         dl,
         surface=surface,
+        models=models,
         tri_eps=tri_eps,
         tiles=tiles,
         random_state=random_state,

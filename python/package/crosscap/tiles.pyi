@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any, Literal
 
@@ -11,6 +12,7 @@ def reconstruct(
     dl: float,
     *,
     surface: bool = False,
+    models: Sequence[str] = ("two-planes",),
     tri_eps: float | None = None,
     tiles: int | None = None,
     random_state: Any = 0,

@@ -87,16 +87,14 @@ impl<S: Scalar> Fitter<'_, S> {
     /// What is known of a row as a point of a boundary, by a model in a ball that is smaller than that of the analysis; `None` where
     /// none says in any of them that the row is on one.
     fn hidden_boundary(&self, row: Row, eps: f64, scratch: &mut Scratch<S>) -> Option<On> {
-        let tuning = &self.tuning.analysis;
         let rules = Rules {
             takes_part: &|model| is_followed(model),
             explains: &|_| true,
         };
-        let mut radius = eps;
-        for _ in 0..tuning.shrinks {
-            radius *= tuning.shrink;
+        for share in self.tuning.ends.continued_in {
+            let radius = share * eps;
             let view = self.view(row, radius, radius, scratch)?;
-            if view.within < tuning.least_neighbors {
+            if view.within < self.tuning.analysis.least_neighbors {
                 return None;
             }
             if self.dimension_of(row, &view) != Some(2) {

@@ -12,6 +12,7 @@ mod groups;
 mod ledger;
 mod look;
 mod options;
+mod part;
 mod refit;
 
 pub use analyzer::Analyzer;
@@ -24,6 +25,7 @@ pub(super) use options::marked;
 use crate::audit;
 use crosscap_core::{BallDimension, Error, Row, Scalar, Table};
 use groups::Asked;
+pub use part::KnownBalls;
 
 impl<'a, S: Scalar> Analyzer<'a, S> {
     /// Analyzes every point.
@@ -85,17 +87,29 @@ impl<S: Scalar> Fitter<'_, S> {
             ],
             false => self.dimensions(options.all_radii())?,
         };
+        let total: usize = balls.iter().map(|ball| ball.neighbors as usize).sum();
+        out.mean_neighbors = total as f64 / n.max(1) as f64;
+        self.look_at(&balls, n, options, boundary, out)
+    }
+
+    /// The same with balls that are known, of points that are all of a cloud of so many or a part of it.
+    fn look_at(
+        &self,
+        balls: &[BallDimension],
+        of: usize,
+        options: &AnalysisOptions,
+        boundary: &Table<Row, bool>,
+        out: &mut Analysis,
+    ) -> Result<(), Error> {
         let found = self
             .space
             .map(self.execute, Scratch::default, |scratch, i| {
                 let (row, dimension) = (Row::new(i), balls[i].dimension as usize);
                 self.first_look(row, dimension, options, boundary[row], scratch)
             });
-        let mut total = 0usize;
         let mut asked: Vec<(u8, Asked)> = Vec::new();
-        for ((row, ball), verdict) in boundary.ids().zip(&balls).zip(found) {
+        for ((row, ball), verdict) in boundary.ids().zip(balls).zip(found) {
             let (neighbors, dimension) = (ball.neighbors as usize, ball.dimension as u8);
-            total += neighbors;
             out.dimensions[row] = dimension;
             match verdict {
                 Some(verdict) => out.take(row, *verdict, boundary[row]),
@@ -118,14 +132,13 @@ impl<S: Scalar> Fitter<'_, S> {
         }
         out.sort();
         self.faults.none()?;
-        out.mean_neighbors = total as f64 / n.max(1) as f64;
-        self.few_are_unexplained(out)
+        self.few_are_unexplained(out, of)
     }
 
     /// # Errors
     /// [`Error::Dimension`] where so many points are explained by no model that the radius must be unfit.
-    fn few_are_unexplained(&self, out: &Analysis) -> Result<(), Error> {
-        let limit = self.tuning.analysis.unexplained_share * out.sites.len() as f64;
+    fn few_are_unexplained(&self, out: &Analysis, of: usize) -> Result<(), Error> {
+        let limit = self.tuning.analysis.unexplained_share * of as f64;
         match out.unexplained.first() {
             Some(&point) if out.unexplained.len() as f64 > limit => Err(Error::Dimension {
                 point: point.index(),

@@ -156,6 +156,12 @@ impl Contacts {
         }
     }
 
+    /// The rows that touch a curve landmark, one after the other.
+    pub(in crate::stratify) fn rows(&self) -> impl Iterator<Item = Row> {
+        let groups = self.groups.iter();
+        groups.flat_map(|group| group.rows.iter().copied())
+    }
+
     /// The groups that a row belongs to.
     fn of(&self, row: Row) -> &[Rim] {
         let row = row.index();

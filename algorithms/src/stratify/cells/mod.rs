@@ -3,6 +3,7 @@
 
 mod contacts;
 mod flood;
+mod found;
 mod graph;
 mod labels;
 mod neighborhoods;
@@ -10,6 +11,7 @@ mod plain;
 mod region;
 
 pub(super) use contacts::Contacts;
+pub(super) use found::Found;
 pub(super) use labels::Labels;
 pub(super) use neighborhoods::Neighborhoods;
 

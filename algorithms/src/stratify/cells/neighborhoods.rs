@@ -1,6 +1,7 @@
 //! The landmarks around each landmark, in each of its cells.
 
 use super::contacts::{Contacts, Hits};
+use super::found::{Found, Members};
 use super::graph::CellGraph;
 use super::labels::Labels;
 use super::plain::{self, Surroundings};
@@ -15,8 +16,7 @@ use crate::stratify::curve_ends::Wards;
 use crate::stratify::skeleton::Skeleton;
 use crate::stratify::strata::Strata;
 use crosscap_core::{
-    CellNeighborhood, Error, Landmark, Neighbor, NeighborhoodOracle, PointCloud, Row, Scalar,
-    Table, squared_distance,
+    Error, Landmark, Neighbor, NeighborhoodOracle, PointCloud, Row, Scalar, Table, squared_distance,
 };
 
 /// Floods that a job takes at a time.
@@ -50,7 +50,7 @@ type Reach = Table<Landmark, f64>;
 /// What has been found so far.
 struct Progress {
     jobs: Vec<Job>,
-    members: Vec<Option<Vec<Landmark>>>,
+    members: Vec<Option<Members>>,
 }
 
 /// The extent of one chart: which nodes of the graph and which landmarks are in it, how far from its center.
@@ -99,23 +99,20 @@ impl<S: Scalar> Extent<'_, S> {
 }
 
 impl<S: Scalar> Neighborhoods<'_, '_, S> {
-    /// The neighborhoods of the landmarks that are `wanted`, landmarks of cells first, and how many edges of the graph
-    /// were cut.
+    /// The neighborhoods of the landmarks that are `wanted`.
     pub(in crate::stratify) fn find(
         &self,
         wanted: &dyn Fn(Landmark) -> bool,
-    ) -> Result<(Vec<CellNeighborhood>, usize), Error> {
+    ) -> Result<Found, Error> {
         let mut jobs = self.jobs();
         jobs.retain(|job| wanted(job.landmark));
         let members = self.plain(&jobs)?;
         let mut progress = Progress { jobs, members };
-        let cut = self.flood(&mut progress)?;
-        let Progress { jobs, members } = progress;
-        let all = jobs
-            .iter()
-            .zip(members)
-            .map(|(job, members)| CellNeighborhood::new(job.landmark, members.unwrap_or_default()));
-        Ok((all.collect(), cut))
+        let mut found = Found::of(self.flood(&mut progress)?);
+        for (job, members) in progress.jobs.iter().zip(progress.members) {
+            found.take(job.landmark, members.unwrap_or_default());
+        }
+        Ok(found)
     }
 
     fn jobs(&self) -> Vec<Job> {
@@ -133,7 +130,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
     }
 
     /// Neighborhoods of one sheet without a curve, where nearness alone says what belongs together.
-    fn plain(&self, jobs: &[Job]) -> Result<Vec<Option<Vec<Landmark>>>, Error> {
+    fn plain(&self, jobs: &[Job]) -> Result<Vec<Option<Members>>, Error> {
         if let ChartSpace::Metric(_) = self.charts {
             return Ok(jobs.iter().map(|_| None).collect());
         }
@@ -168,7 +165,10 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
             let far = |k: Landmark| places.squared_distance(center, self.rows[k].index());
             around
                 .is_plain(landmark, radius, &members, scratch)
-                .then(|| nearest_first(members, far))
+                .then(|| Members {
+                    landmarks: nearest_first(members, far),
+                    radius,
+                })
         };
         Ok(execute::map(
             self.analyzer.execute,
@@ -208,7 +208,10 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
             let mut thin = Vec::new();
             for (&j, found) in pending.iter().zip(flooded) {
                 if found.len() >= tuning.least_members || widening == tuning.widenings {
-                    members[j] = Some(found);
+                    members[j] = Some(Members {
+                        landmarks: found,
+                        radius,
+                    });
                 } else {
                     thin.push(j);
                 }

@@ -1,98 +1,10 @@
-//! A cloud in tiles is the same surface as the cloud as a whole, to the last bit, whatever the tiles are.
+//! Surfaces that do not cross themselves, and what is not taken.
 
+use crate::same::{same, sample};
 use crosscap::prelude::*;
-use crosscap_algorithms::certificate::Limits;
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::surfaces::Random;
-use crosscap_algorithms::tiles::{Answer, Question, Tiles, TilesInMemory, Tiling};
-use std::cell::RefCell;
-
-/// Tiles that count what is asked of them.
-struct Counted<'a> {
-    tiles: TilesInMemory<'a>,
-    asked: RefCell<Vec<&'static str>>,
-}
-
-impl Tiles for Counted<'_> {
-    fn points(&self) -> usize {
-        self.tiles.points()
-    }
-
-    fn dimension(&self) -> usize {
-        self.tiles.dimension()
-    }
-
-    fn halo(&self) -> f64 {
-        self.tiles.halo()
-    }
-
-    fn ask(&self, question: &Question) -> Result<Vec<Answer>, Error> {
-        let name = match question {
-            Question::Copies => "copies",
-            Question::Landmarks { .. } => "landmarks",
-            Question::Cells(_) => "cells",
-            Question::Nearest { .. } => "nearest",
-            Question::Around { .. } => "around",
-            Question::Rows(_) => "rows",
-            Question::Behind(_) => "behind",
-        };
-        self.asked.borrow_mut().push(name);
-        self.tiles.ask(question)
-    }
-}
-
-/// All that must not depend on tiles.
-fn told(outcome: &Outcome) -> String {
-    let Outcome {
-        mesh,
-        homology,
-        certificate,
-        pieces,
-        failures,
-        report,
-        ..
-    } = outcome;
-    format!(
-        "{mesh:?} {homology:?} {certificate:?} {pieces:?} {failures:?} {:?} {:?} {:?} {}",
-        report.landmarks, report.triangulation, report.chart_distortion, report.added_landmarks
-    )
-}
-
-/// Reconstructs a cloud as a whole and in so many tiles, and returns the outcome and what was asked of the tiles.
-fn same(
-    cloud: &PointCloud<f64>,
-    parameters: &Parameters,
-    looked_at: usize,
-    tiles: &[usize],
-) -> (Outcome, Vec<&'static str>) {
-    let pipeline = || {
-        let limits = Limits {
-            points_tested: looked_at,
-            ..Limits::default()
-        };
-        Pipeline::new(parameters.clone()).unwrap().limits(limits)
-    };
-    let whole = pipeline().reconstruct(cloud).unwrap();
-    let mut asked = Vec::new();
-    for &count in tiles {
-        let halo = pipeline().tile_halo();
-        let tiling = Tiling::new(cloud, count);
-        assert_eq!(tiling.bounds().len(), count);
-        let counted = Counted {
-            tiles: TilesInMemory::new(cloud, &tiling, halo, parameters.seed, &Serial).unwrap(),
-            asked: RefCell::new(Vec::new()),
-        };
-        let found = pipeline().reconstruct_tiles(&counted).unwrap();
-        assert!(told(&found) == told(&whole), "{count} tiles");
-        asked = counted.asked.into_inner();
-    }
-    (whole, asked)
-}
-
-fn sample(name: &str, count: usize, seed: u64) -> PointCloud<f64> {
-    let surface = SampleSurface::find(name).unwrap();
-    surface.sample(&Sampling::new(count, seed)).unwrap().points
-}
+use crosscap_algorithms::tiles::{TilesInMemory, Tiling};
 
 #[test]
 fn closed_surfaces_are_the_same() {
@@ -111,7 +23,7 @@ fn landmarks_are_added_in_the_same_places() {
     };
     let (bottle, asked) = same(&sample("klein_r5", 3000, 2), &parameters, 200_000, &[3]);
     assert!(bottle.report.added_landmarks > 0);
-    assert!(asked.contains(&"around"));
+    assert!(asked.names.contains(&"around"));
 }
 
 #[test]
@@ -119,7 +31,7 @@ fn points_that_are_left_behind_are_the_same() {
     let parameters = Parameters::new(0.6, 0.3).surface();
     let (thorns, asked) = same(&thorny(), &parameters, 200_000, &[3]);
     assert!(thorns.report.added_landmarks > 0);
-    assert!(asked.contains(&"behind"), "{asked:?}");
+    assert!(asked.names.contains(&"behind"), "{asked:?}");
 }
 
 /// A unit sphere with thorns that are almost as long as landmarks are apart.
@@ -186,13 +98,13 @@ fn what_tiles_cannot_be_asked_about_is_refused() {
         let tiles = TilesInMemory::new(cloud, &tiling, pipeline.tile_halo(), 0, &Serial).unwrap();
         pipeline.reconstruct_tiles(&tiles).map(drop)
     };
-    let curves = ask(Parameters::new(0.6, 0.3), &cloud);
+    let everywhere = Parameters {
+        models: vec![ModelName::TwoPlanes, ModelName::CurveThroughSheet],
+        ..Parameters::new(0.6, 0.3)
+    };
     assert!(matches!(
-        curves,
-        Err(Error::Parameter {
-            name: "surface",
-            ..
-        })
+        ask(everywhere, &cloud),
+        Err(Error::Parameter { name: "models", value, .. }) if value == "curve-through-sheet"
     ));
     let sphere = Parameters::new(0.6, 0.3).surface();
     let mut pipeline = Pipeline::new(sphere).unwrap();
