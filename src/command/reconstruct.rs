@@ -10,7 +10,7 @@ use super::observed::observed;
 use super::outcome::{duplicates, findings, report, told, verdict, write_reconstruction};
 use super::parameters::{ATTEMPTS, Help, MAIN, MethodName, ParameterArguments};
 use super::points::PointArguments;
-use super::terminal::say;
+use super::terminal::{complain, say};
 use super::{choice, output, overlay, picture, refused, repeat};
 use clap::Args;
 use crosscap::auto::USUAL_TRIES;
@@ -136,6 +136,11 @@ impl Reconstruct {
             )));
         }
         let pinned = self.parameters.pinned(self.boundary_rows(input.len())?)?;
+        // Where lengths are not given the program may still choose a metric that asks.
+        if pinned.complete().is_some() {
+            let idle = self.parameters.spaces.without_effect();
+            idle.iter().for_each(complain);
+        }
         let whole = match input.whole() {
             Ok(whole) => whole,
             Err(limited) => return self.in_tiles(&input, limited, &pinned),

@@ -78,3 +78,32 @@ pub struct SpaceArguments {
     #[arg(long, hide_short_help = true, value_name = "POLICY")]
     pub neighborhoods: Option<Neighborhoods>,
 }
+
+impl SpaceArguments {
+    /// Options that nothing asks about in a run with these metrics, each with what would ask it.
+    pub fn without_effect(&self) -> Vec<String> {
+        let analysis = self.metric.unwrap_or_default();
+        let charts = self.tri_metric.unwrap_or(analysis);
+        let asked_by =
+            |metrics: &[MetricName]| metrics.contains(&analysis) || metrics.contains(&charts);
+        let graph = &self.graph;
+        let along: &[MetricName] = &[MetricName::Geodesic, MetricName::Conformal];
+        let given = [
+            ("--graph-eps", graph.graph_eps.is_some(), along),
+            ("--graph-k", graph.graph_k.is_some(), along),
+            ("--graph-sheets", graph.graph_sheets, &along[..1]),
+            ("--lift", graph.lift.is_some(), &[MetricName::Lifted]),
+        ];
+        let idle = given
+            .iter()
+            .filter(|(_, given, metrics)| *given && !asked_by(metrics));
+        let told = idle.map(|(name, _, metrics)| {
+            let names: Vec<String> = metrics.iter().map(ToString::to_string).collect();
+            format!(
+                "{name} has no effect here: it is for --metric or --tri-metric {}",
+                names.join(" or ")
+            )
+        });
+        told.collect()
+    }
+}

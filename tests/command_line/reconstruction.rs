@@ -196,3 +196,24 @@ fn a_failure_leaves_the_old_file_alone() {
         .expect(1);
     assert_eq!(std::fs::read(room.path("mesh.npz")).unwrap(), b"precious");
 }
+
+/// Options for a metric that the run does not have are no error, as a command that repeats a run may carry them; but it is said.
+#[test]
+fn options_that_nothing_asks_are_told() {
+    let room = Room::new();
+    sphere_points(&room);
+    let run = |options: &str| {
+        let run =
+            format!("reconstruct points.npy -o m.npz --eps 0.3 --dl 0.15 --surface {options}");
+        room.run(&run).expect(0)
+    };
+    run("--graph-k 20 --lift 1")
+        .complains("--graph-k has no effect here: it is for --metric or --tri-metric geodesic or conformal")
+        .complains("--lift has no effect here: it is for --metric or --tri-metric lifted");
+    let told = run("--graph-k 20 --tri-metric geodesic").err;
+    assert!(!told.contains("no effect"), "{told}");
+    let ran = room
+        .run("reconstruct points.npy -o m.npz --graph-k 20")
+        .expect(0);
+    assert!(!ran.err.contains("no effect"), "{}", ran.err);
+}
