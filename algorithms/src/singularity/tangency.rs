@@ -232,5 +232,6 @@ impl Gap {
         self.least.abs() <= GAP * spacing && self.slope <= GAP * spacing
     }
 }
+
 #[cfg(test)]
 mod tests;
