@@ -192,6 +192,9 @@ def test_metrics_are_compared(cloud):
     # The same distances, so the same meshes; half of them, so others.
     assert [run.triangles for run in runs[:2]] == [run.triangles for run in runs[2:4]]
     assert runs[4].triangles != runs[0].triangles
+    # What ran says its own name.
+    assert all({"metric", "oracle", "triangulator"} <= run.plugins.keys() for run in runs[:4])
+    assert runs[0].plugins["metric"] != runs[2].plugins["metric"]
     (wrong,) = crosscap.compare(
         cloud, [0.7], 0.3, metrics=["euclidean"], betti=(1, 2, 1), surface=True
     )

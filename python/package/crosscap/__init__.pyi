@@ -55,6 +55,8 @@ class ComparedRun:
     triangles: int | None
     distortion: dict[str, float] | None
     reason: str | None
+    plugins: dict[str, str | None] | None
+    models: list[str]
     seconds: float | None
     def __init__(
         self,
@@ -67,6 +69,8 @@ class ComparedRun:
         triangles: int | None = None,
         distortion: dict[str, float] | None = None,
         reason: str | None = None,
+        plugins: dict[str, str | None] | None = None,
+        models: list[str] = ...,
         seconds: float | None = None,
     ) -> None: ...
     @property

@@ -29,6 +29,10 @@ class ComparedRun:
         What the charts lose, mean and largest.
     reason : str or None
         Why there is no verified mesh, or what speaks against one that is verified.
+    plugins : dict or None
+        What worked on the points, by the names that the plug-ins give themselves; None where there is no mesh.
+    models : list of str
+        The singularity models that took part, by their own names.
     seconds : float
         Time on one thread.
     """
@@ -42,6 +46,8 @@ class ComparedRun:
     triangles: int | None = None
     distortion: dict | None = field(default=None, repr=False)
     reason: str | None = None
+    plugins: dict | None = field(default=None, repr=False)
+    models: list = field(default_factory=list, repr=False)
     seconds: float | None = field(default=None, repr=False)
 
     @property
