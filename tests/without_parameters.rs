@@ -25,7 +25,7 @@ fn a_boundary_goes_on_where_another_sheet_is_near() {
     }
 }
 
-/// Half a spacing of noise: the points next to the crossing lie in one band as thick as eps is wide.
+/// Half a spacing of noise, a tenth of eps: next to the crossing no point says by itself which sheet it is of.
 #[test]
 fn noise_where_sheets_cross_is_taken_away() {
     let sampling = Sampling {

@@ -14,8 +14,8 @@ use serde::Serialize;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Move {
-    /// Larger neighborhoods, landmarks as they were: no move makes the mesh coarser, as a coarser mesh passes
-    /// by seeing less.
+    /// Larger neighborhoods, landmarks as they were: a coarser mesh passes by seeing less, and is tried only where points
+    /// scatter.
     Larger,
     /// Smaller neighborhoods, and landmarks nearer to each other.
     Smaller,
