@@ -1,5 +1,6 @@
 //! Any number of sheets that meet in one curve.
 
+use super::one_fit::{OneFit, located};
 use super::page_sheets::PageSheets;
 use super::patch::PATCH_POINTS;
 use super::plane_pair::PlanePair;
@@ -139,20 +140,34 @@ impl Fit {
             })
         })
     }
+}
 
-    fn locate(&self, row: usize) -> Option<Located> {
+impl OneFit for Fit {
+    fn located(&self, row: usize) -> Option<Located> {
         let x = self.all[row];
         let place = self.on_curve(row).filter(|p| self.is_supported(p));
         let on = self.label(row) == CURVE;
         if on && place.is_none() {
             return None;
         }
-        Some(Located {
-            dimension: if on { 1 } else { 2 },
-            cells: self.book.count() as u8,
-            place: place.unwrap_or(x).iter().copied().collect(),
-            offset: place.map_or(f64::INFINITY, |p| (p - x).norm()),
-        })
+        let cells = self.book.count() as u8;
+        Some(located(x, if on { 1 } else { 2 }, cells, place))
+    }
+
+    fn decomposition(self, center: Located) -> Decomposition {
+        let count = self.book.count();
+        let dimensions = std::iter::once(1).chain(std::iter::repeat_n(2, count));
+        Decomposition {
+            strata: dimensions.map(|dimension| Stratum { dimension }).collect(),
+            labels: (0..self.all.len()).map(|row| self.label(row)).collect(),
+            cells_at_curve: vec![count as u8],
+            residual: self.residual,
+            // Besides the patches the direction and the place of the line.
+            parameters: self.book.parameters() + 4,
+            points: Vec::new(),
+            center: center.place,
+            center_offset: center.offset,
+        }
     }
 }
 
@@ -170,26 +185,7 @@ impl SingularityModel for Book {
         local: &LocalPoints<'_>,
         rows: &[usize],
     ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
-        let fit = self.fit(local)?;
-        let count = fit.book.count();
-        let center = fit.locate(local.center).ok_or(Rejection::NoRealSolution)?;
-        let located = rows.iter().map(|&row| fit.locate(row)).collect();
-        let dimension = |k: usize| if k == 0 { 1 } else { 2 };
-        let strata = (0..=count).map(|k| Stratum {
-            dimension: dimension(k),
-        });
-        let decomposition = Decomposition {
-            strata: strata.collect(),
-            labels: (0..local.len()).map(|row| fit.label(row)).collect(),
-            cells_at_curve: vec![count as u8],
-            residual: fit.residual,
-            // Besides the patches the direction and the place of the line.
-            parameters: fit.book.parameters() + 4,
-            points: Vec::new(),
-            center: center.place,
-            center_offset: center.offset,
-        };
-        Ok((decomposition, located))
+        self.fit(local)?.about(local.center, rows)
     }
 
     fn name(&self) -> &str {

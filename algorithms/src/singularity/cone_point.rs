@@ -1,5 +1,6 @@
 //! A point at which a surface is like the tip of a cone.
 
+use super::one_fit::{OneFit, located};
 use super::patch::off_one_sheet;
 use super::quadric_cone::QuadricCone;
 use super::tolerance::{Tolerance, at_least, vectors};
@@ -121,28 +122,23 @@ impl Fit {
             _ => CELLS[0],
         }
     }
+}
 
-    fn located(&self, row: usize) -> Located {
-        let own = self.all[row];
+impl OneFit for Fit {
+    fn located(&self, row: usize) -> Option<Located> {
         let at_tip = self.label(row) == POINT;
-        let (place, offset) = match at_tip {
-            true => (self.cone.apex, (own - self.cone.apex).norm()),
-            false => (own, f64::INFINITY),
+        let (dimension, place) = match at_tip {
+            true => (0, Some(self.cone.apex)),
+            false => (2, None),
         };
-        Located {
-            dimension: if at_tip { 0 } else { 2 },
-            cells: 0,
-            place: place.iter().copied().collect(),
-            offset,
-        }
+        Some(located(self.all[row], dimension, 0, place))
     }
 
-    fn decomposition(&self, center: usize) -> Decomposition {
+    fn decomposition(self, center: Located) -> Decomposition {
         let strata: &[u8] = match self.halves {
             [true, true] => &[0, 2, 2],
             _ => &[0, 2],
         };
-        let center = self.located(center);
         Decomposition {
             strata: (strata.iter())
                 .map(|&dimension| Stratum { dimension })
@@ -178,7 +174,7 @@ impl SingularityModel for ConePoint {
     }
 
     fn decompose(&self, local: &LocalPoints<'_>) -> Result<Decomposition, Rejection> {
-        Ok(self.fit(local)?.decomposition(local.center))
+        Ok(self.decompose_about(local, &[])?.0)
     }
 
     fn decompose_about(
@@ -186,9 +182,7 @@ impl SingularityModel for ConePoint {
         local: &LocalPoints<'_>,
         rows: &[usize],
     ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
-        let fit = self.fit(local)?;
-        let located = rows.iter().map(|&row| Some(fit.located(row))).collect();
-        Ok((fit.decomposition(local.center), located))
+        self.fit(local)?.about(local.center, rows)
     }
 
     fn name(&self) -> &str {

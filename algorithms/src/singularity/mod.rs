@@ -15,6 +15,7 @@ mod flats;
 mod isolated_crossing;
 mod kink;
 mod lowest;
+mod one_fit;
 mod page_sheets;
 mod pages;
 mod patch;

@@ -1,6 +1,7 @@
 //! Three sheets that cross in a point.
 
 use super::flats::{candidates, greedy};
+use super::one_fit::{OneFit, located};
 use super::patch::PATCH_POINTS;
 use super::sheets::Sheets;
 use super::tolerance::{Tolerance, at_least, vectors};
@@ -146,9 +147,10 @@ impl Fit {
         }
         (sum, held)
     }
+}
 
-    /// Where a row is; `None` where it is on an arc that cannot be found.
-    fn locate(&self, row: usize) -> Option<Located> {
+impl OneFit for Fit {
+    fn located(&self, row: usize) -> Option<Located> {
         let x = self.all[row];
         let (dimension, place) = match self.labels[row] {
             0 => (0, Some(self.apex)),
@@ -162,12 +164,21 @@ impl Fit {
             }
             _ => (2, None),
         };
-        Some(Located {
-            dimension,
-            cells: 4 * u8::from(dimension > 0),
-            place: place.unwrap_or(x).iter().copied().collect(),
-            offset: place.map_or(f64::INFINITY, |p| (p - x).norm()),
-        })
+        Some(located(x, dimension, 4 * u8::from(dimension > 0), place))
+    }
+
+    fn decomposition(self, center: Located) -> Decomposition {
+        let dimensions = [0u8].into_iter().chain([1; 6]).chain([2; 12]);
+        Decomposition {
+            strata: dimensions.map(|dimension| Stratum { dimension }).collect(),
+            cells_at_curve: vec![4; 6],
+            residual: self.residual,
+            parameters: 24,
+            points: vec![self.apex.iter().copied().collect()],
+            center: center.place,
+            center_offset: center.offset,
+            labels: self.labels.into_iter().map(Label::from).collect(),
+        }
     }
 }
 
@@ -189,21 +200,7 @@ impl SingularityModel for TriplePoint {
         local: &LocalPoints<'_>,
         rows: &[usize],
     ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
-        let fit = self.fit(local)?;
-        let center = fit.locate(local.center).ok_or(Rejection::NoRealSolution)?;
-        let located = rows.iter().map(|&row| fit.locate(row)).collect();
-        let dimensions = [0u8].into_iter().chain([1; 6]).chain([2; 12]);
-        let decomposition = Decomposition {
-            strata: dimensions.map(|dimension| Stratum { dimension }).collect(),
-            cells_at_curve: vec![4; 6],
-            residual: fit.residual,
-            parameters: 24,
-            points: vec![fit.apex.iter().copied().collect()],
-            center: center.place,
-            center_offset: center.offset,
-            labels: fit.labels.into_iter().map(Label::from).collect(),
-        };
-        Ok((decomposition, located))
+        self.fit(local)?.about(local.center, rows)
     }
 
     fn name(&self) -> &str {

@@ -1,5 +1,6 @@
 //! Two sheets that cross in a curve.
 
+use super::one_fit::{OneFit, located};
 use super::patch::{PATCH_POINTS, QuadraticPatch};
 use super::plane_pair::PlanePair;
 use super::tolerance::{Tolerance, at_least, vectors};
@@ -221,28 +222,34 @@ struct Sheets {
     residual: f64,
 }
 
-impl Sheets {
-    /// Where a row is, `None` where it is in the band of the curve and no curve can be found.
-    fn locate(&self, row: usize) -> Option<Located> {
+impl OneFit for Sheets {
+    fn located(&self, row: usize) -> Option<Located> {
         let x = self.all[row];
         let singular = self.labels[row] == 0;
         let (points, labels) = (&self.all[..self.fitted], &self.labels[..self.fitted]);
         let tuning = &self.tuning;
-        let reached = meet(&self.sheets, x, tuning.step * self.radius, tuning.sine)
+        let place = meet(&self.sheets, x, tuning.step * self.radius, tuning.sine)
+            .filter(|place| singular || (place - x).norm() < tuning.witness * self.ep)
             .filter(|place| supported(place, points, labels, tuning.support * self.radius));
-        let (place, offset) = match reached {
-            Some(place) if singular || (place - x).norm() < tuning.witness * self.ep => {
-                (place, (place - x).norm())
-            }
-            None if singular => return None,
-            _ => (x, f64::INFINITY),
-        };
-        Some(Located {
-            dimension: if singular { 1 } else { 2 },
-            cells: 4,
-            place: place.iter().copied().collect(),
-            offset,
-        })
+        if singular && place.is_none() {
+            return None;
+        }
+        Some(located(x, if singular { 1 } else { 2 }, 4, place))
+    }
+
+    fn decomposition(self, center: Located) -> Decomposition {
+        Decomposition {
+            strata: [1, 2, 2, 2, 2]
+                .map(|dimension| Stratum { dimension })
+                .to_vec(),
+            cells_at_curve: vec![4],
+            residual: self.residual,
+            parameters: 16,
+            points: Vec::new(),
+            center: center.place,
+            center_offset: center.offset,
+            labels: self.labels.into_iter().map(Label::from).collect(),
+        }
     }
 }
 
@@ -291,22 +298,7 @@ impl SingularityModel for TwoPlanes {
         local: &LocalPoints<'_>,
         rows: &[usize],
     ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
-        let fit = self.fit(local)?;
-        let center = fit.locate(local.center).ok_or(Rejection::NoRealSolution)?;
-        let located = rows.iter().map(|&row| fit.locate(row)).collect();
-        let decomposition = Decomposition {
-            strata: std::iter::once(Stratum { dimension: 1 })
-                .chain(std::iter::repeat_n(Stratum { dimension: 2 }, 4))
-                .collect(),
-            cells_at_curve: vec![4],
-            residual: fit.residual,
-            parameters: 16,
-            points: Vec::new(),
-            center: center.place,
-            center_offset: center.offset,
-            labels: fit.labels.into_iter().map(Label::from).collect(),
-        };
-        Ok((decomposition, located))
+        self.fit(local)?.about(local.center, rows)
     }
 
     fn name(&self) -> &str {

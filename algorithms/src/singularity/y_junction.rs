@@ -1,6 +1,7 @@
 //! Three sheets that end in one curve, as in soap films.
 
 use super::flats::{Flat, candidates, greedy};
+use super::one_fit::{OneFit, located};
 use super::patch::PATCH_POINTS;
 use super::sheets::Sheets;
 use super::tolerance::{Tolerance, at_least, vectors};
@@ -182,9 +183,8 @@ impl YJunction {
     }
 }
 
-impl Fit {
-    /// Where a row is, `None` where it is in the band of the junction and no junction can be found.
-    fn locate(&self, row: usize) -> Option<Located> {
+impl OneFit for Fit {
+    fn located(&self, row: usize) -> Option<Located> {
         let [step, _, witness] = self.reach;
         let x = self.all[row];
         let on_curve = self.labels[row] == 0;
@@ -195,14 +195,24 @@ impl Fit {
         if on_curve && place.is_none() {
             return None;
         }
-        Some(Located {
-            dimension: if on_curve { 1 } else { 2 },
-            cells: 3,
-            place: place.unwrap_or(x).iter().copied().collect(),
-            offset: place.map_or(f64::INFINITY, |p| (p - x).norm()),
-        })
+        Some(located(x, if on_curve { 1 } else { 2 }, 3, place))
     }
 
+    fn decomposition(self, center: Located) -> Decomposition {
+        Decomposition {
+            strata: [1, 2, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
+            cells_at_curve: vec![3],
+            residual: self.residual,
+            parameters: 22,
+            points: Vec::new(),
+            center: center.place,
+            center_offset: center.offset,
+            labels: self.labels.into_iter().map(Label::from).collect(),
+        }
+    }
+}
+
+impl Fit {
     /// Whether all cells have a fitted point close to a place.
     fn supports(&self, place: &Vector3<f64>) -> bool {
         let mut nearest = [f64::INFINITY; 4];
@@ -228,20 +238,7 @@ impl SingularityModel for YJunction {
         local: &LocalPoints<'_>,
         rows: &[usize],
     ) -> Result<(Decomposition, Vec<Option<Located>>), Rejection> {
-        let fit = self.fit(local)?;
-        let center = fit.locate(local.center).ok_or(Rejection::NoRealSolution)?;
-        let located = rows.iter().map(|&row| fit.locate(row)).collect();
-        let decomposition = Decomposition {
-            strata: [1, 2, 2, 2].map(|dimension| Stratum { dimension }).to_vec(),
-            cells_at_curve: vec![3],
-            residual: fit.residual,
-            parameters: 22,
-            points: Vec::new(),
-            center: center.place,
-            center_offset: center.offset,
-            labels: fit.labels.into_iter().map(Label::from).collect(),
-        };
-        Ok((decomposition, located))
+        self.fit(local)?.about(local.center, rows)
     }
 
     fn name(&self) -> &str {
