@@ -14,6 +14,12 @@ use serde::Serialize;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Move {
+    /// Landmarks near enough to leave the gaps of the points open, in neighborhoods that are smaller by as much: as large as before they
+    /// would see the other side of a hole.
+    Opened,
+    /// Both lengths larger, where the points scatter across the surface: what moving them onto fits leaves of that is less in a larger
+    /// neighborhood. No other move makes the mesh coarser, as a coarser mesh passes by seeing less; here there is less to be seen.
+    Widened,
     /// Larger neighborhoods, landmarks as they were: a coarser mesh passes by seeing less, and is tried only where points
     /// scatter.
     Larger,
@@ -56,10 +62,31 @@ const UNEVEN: f64 = 4.0;
 /// Landmarks are at least so many spacings apart: below that a landmark has no points around it.
 pub(crate) const CLOSEST: f64 = 1.3;
 
+/// Factor on both lengths where points scatter.
+const WIDER: f64 = 1.2;
+/// Neighborhoods that scatter asks for at least, in standard deviations: a double bubble with noise of half of dl left 18 stars open at 4
+/// of them, and 2 at 10.
+const LEAST_WIDE: f64 = 10.0;
+/// Widest neighborhoods that scatter asks for, in standard deviations: beyond, what is left of it after the points were moved is
+/// not what fails.
+const SCATTER: f64 = 25.0;
+
+/// What is known of the points when a move is looked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known<'k> {
+    pub(super) density: &'k Density,
+    /// The separation below which the attempt would have left the gaps of the points open, where it did not.
+    pub(super) needed: Option<f64>,
+    /// Standard deviation of the points across the surface, where they scatter.
+    pub(super) noise: Option<f64>,
+}
+
 impl Move {
     /// Why it is tried, in a few words.
     pub fn reason(self) -> &'static str {
         match self {
+            Self::Opened => "landmarks near enough to leave the gaps open",
+            Self::Widened => "larger neighborhoods, as the points scatter",
             Self::Larger => "larger neighborhoods",
             Self::Smaller => "smaller neighborhoods, where the surface bends less",
             Self::Finer => "landmarks nearer to each other",
@@ -81,19 +108,24 @@ impl Move {
     }
 
     /// Parameters `from` an earlier attempt with this change; nothing where what is pinned forbids it, the points are
-    /// too few for it, or it changes nothing.
+    /// too few for it, what it goes by is not known, or it changes nothing.
     pub(super) fn apply(
         self,
         from: &Parameters,
         pinned: &Pinned,
-        density: &Density,
+        known: &Known<'_>,
     ) -> Option<Parameters> {
+        let density = known.density;
         let least = match self {
+            // Landmarks do not come nearer.
+            Self::Widened => 0.0,
             Self::Spaced => density.spacing,
             _ if from.spaces.metric == MetricName::Conformal => density.spacing,
             _ => density.dense,
         };
         match self {
+            Self::Opened => opened(from, pinned, known.needed?),
+            Self::Widened => widened(from, pinned, known.noise?),
             Self::Larger => scaled(from, pinned, LARGER, 1.0),
             Self::Smaller => scaled(from, pinned, SMALLER, SMALLER),
             Self::Finer => scaled(from, pinned, 1.0, FINER),
@@ -128,34 +160,16 @@ impl Move {
     }
 }
 
-/// Both lengths by one factor, so that the separation is below the `needed` one; neighborhoods as large as before would see
-/// the other side of a hole.
-pub(super) fn opened(
-    from: &Parameters,
-    pinned: &Pinned,
-    density: &Density,
-    needed: f64,
-) -> Option<Parameters> {
+/// Both lengths by one factor, so that the separation is below the `needed` one.
+fn opened(from: &Parameters, pinned: &Pinned, needed: f64) -> Option<Parameters> {
     let factor = ROOMY * needed / from.dl;
-    let next = (factor < 1.0).then(|| scaled(from, pinned, factor, factor))??;
-    (next.dl >= CLOSEST * density.dense && next.check().is_ok()).then_some(next)
+    (factor < 1.0).then(|| scaled(from, pinned, factor, factor))?
 }
 
-/// Factor on both lengths where points scatter.
-const WIDER: f64 = 1.2;
-/// Neighborhoods that scatter asks for at least, in standard deviations: a double bubble with noise of half of dl left 18 stars open at 4
-/// of them, and 2 at 10.
-const LEAST_WIDE: f64 = 10.0;
-/// Widest neighborhoods that scatter asks for, in standard deviations: beyond, what is left of it after the points were moved is
-/// not what fails.
-const SCATTER: f64 = 25.0;
-
-/// Both lengths larger, where points scatter by `noise` across the surface: what moving them onto fits leaves of it is less in a larger
-/// neighborhood. No other move makes the mesh coarser, as a coarser mesh passes by seeing less; here there is less to be seen.
-pub(super) fn widened(from: &Parameters, pinned: &Pinned, noise: f64) -> Option<Parameters> {
+/// Both lengths by one factor, where points scatter by `noise`.
+fn widened(from: &Parameters, pinned: &Pinned, noise: f64) -> Option<Parameters> {
     let factor = (LEAST_WIDE * noise / from.eps).max(WIDER);
-    let next = scaled(from, pinned, factor, factor)?;
-    (next.eps <= SCATTER * noise && next.check().is_ok()).then_some(next)
+    scaled(from, pinned, factor, factor).filter(|next| next.eps <= SCATTER * noise)
 }
 
 /// Whether every point may be taken as one of a surface, with distances along it.

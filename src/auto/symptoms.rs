@@ -95,36 +95,33 @@ impl Symptom {
             && (certificate.violations()).all(|v| at_ends(v) || v.kind == BridgedGap)
     }
 
-    /// Whether scatter across the surface can be why, which is less in a larger neighborhood.
-    pub(super) fn is_of_scatter(self) -> bool {
-        use Symptom::*;
-        matches!(
-            self,
-            Unexplained | Curves | Folds | Ends | Open | Behind | Cover
-        )
-    }
-
     /// What is worth trying, in order. Of 756 clouds around one feature, 500 to 1500 points each, smaller neighborhoods passed at
     /// 71 of 219 attempts, one closed surface at 36 of 260, charts that unfold at 5 of 114, other landmarks by themselves at 17 of
-    /// 60 the first time and never again.
+    /// 60 the first time and never again. What scatter of the points across the surface can be why of is asked of larger neighborhoods first.
     pub(super) fn moves(self) -> &'static [Move] {
         use Move::*;
         match self {
             Self::Sparse => &[Spaced, Larger, Local, Closed, Ending],
-            Self::Unexplained => &[Spaced, Closed, Ending, Smaller, Local],
-            Self::Curves => &[Spaced, Smaller, Closed, Ending, Local, Finer, Unfolded],
-            Self::Folds | Self::Open => &[
-                Spaced, Creased, Smaller, Closed, Unfolded, Ending, Local, Finer,
+            Self::Unexplained => &[Widened, Spaced, Closed, Ending, Smaller, Local],
+            Self::Curves => &[
+                Widened, Spaced, Smaller, Closed, Ending, Local, Finer, Unfolded,
             ],
-            Self::Coarse => &[Smaller, Ending, Finer, Spaced, Closed, Unfolded],
-            Self::Ends => &[Ending, Spaced, Smaller, Closed, Unfolded],
+            Self::Folds | Self::Open => &[
+                Widened, Spaced, Creased, Smaller, Closed, Unfolded, Ending, Local, Finer,
+            ],
+            Self::Coarse => &[Opened, Smaller, Ending, Finer, Spaced, Closed, Unfolded],
+            Self::Ends => &[Widened, Ending, Spaced, Smaller, Closed, Unfolded],
             // A gap stays open where landmarks are nearer to each other than it is wide, if the mesh may end there.
-            Self::Gaps => &[Smaller, Ending, Finer, Spaced],
+            Self::Gaps => &[Opened, Smaller, Ending, Finer, Spaced],
             // Paths along the surface do not lead from one sheet to the other.
             Self::Merged => &[Closed, Ending, Finer, Unfolded, Smaller],
             // In a smaller neighborhood there is less beside the curve that its end could be taken for.
-            Self::Behind => &[Smaller, Spaced, Closed, Finer, Ending, Unfolded, Local],
-            Self::Cover => &[Spaced, Smaller, Closed, Finer, Ending, Unfolded, Local],
+            Self::Behind => &[
+                Widened, Smaller, Spaced, Closed, Finer, Ending, Unfolded, Local,
+            ],
+            Self::Cover => &[
+                Widened, Spaced, Smaller, Closed, Finer, Ending, Unfolded, Local,
+            ],
         }
     }
 }

@@ -1,3 +1,5 @@
+use super::density::Density;
+use super::moves::Known;
 use super::{Auto, Doubt, Input, Move, Pinned};
 use crate::pipeline::{Parameters, Pipeline};
 use crate::refusal::{Advice, FaultKind};
@@ -180,13 +182,22 @@ fn a_density_that_varies_a_hundredfold_is_followed() {
     assert_eq!(outcome.homology.betti_rational, [1, 0, 1]);
 }
 
+fn spaced(from: &Parameters, density: &Density) -> Option<Parameters> {
+    let known = Known {
+        density,
+        needed: None,
+        noise: None,
+    };
+    Move::Spaced.apply(from, &Pinned::default(), &known)
+}
+
 #[test]
 fn in_the_spacing_of_the_points_landmarks_are_near_where_points_are() {
     let cloud = uneven_sphere();
     let choice = Parameters::auto().choose(Input::Points(&cloud)).unwrap();
     let density = choice.density.unwrap();
-    let spaced = Move::Spaced.apply(&choice.parameters, &Pinned::default(), &density);
-    let parameters = spaced.expect("the density varies");
+    let found = spaced(&choice.parameters, &density);
+    let parameters = found.expect("the density varies");
     assert!(parameters.dl < choice.parameters.dl);
     let outcome = Pipeline::new(parameters)
         .unwrap()
@@ -214,8 +225,8 @@ fn what_does_not_vary_is_not_measured_in_its_spacing() {
     let cloud = sample("sphere", 2000);
     let choice = Parameters::auto().choose(Input::Points(&cloud)).unwrap();
     let density = choice.density.unwrap();
-    let spaced = Move::Spaced.apply(&choice.parameters, &Pinned::default(), &density);
-    assert!(spaced.is_none());
+    let found = spaced(&choice.parameters, &density);
+    assert!(found.is_none());
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::Progress;
 use crate::auto::attempt::Attempt;
 use crate::auto::density::Density;
-use crate::auto::moves::{Move, opened, other_landmarks, widened};
+use crate::auto::moves::{Known, Move, other_landmarks};
 use crate::auto::needs::RESOLVING;
 use crate::auto::symptoms::Symptom;
 use crate::pipeline::Parameters;
@@ -50,6 +50,15 @@ impl Progress<'_> {
         (times..=times + 1).find_map(|time| other_landmarks(of, &self.pinned, time).filter(fresh))
     }
 
+    /// What moves go by, where gaps of the points need landmarks as near as this.
+    fn known<'k>(&self, density: &'k Density, needed: Option<f64>) -> Known<'k> {
+        Known {
+            density,
+            needed,
+            noise: self.prepared.noise(),
+        }
+    }
+
     /// What to try next and why: other landmarks where little is wrong, and otherwise a change of the attempt that came
     /// farthest, or of the first, that was not tried yet.
     pub(super) fn next(&self, density: &Density) -> Option<(Parameters, &'static str)> {
@@ -61,20 +70,10 @@ impl Progress<'_> {
         let fresh = |next: &Parameters| self.attempts.iter().all(|a| a.parameters != *next);
         [farthest, 0].into_iter().find_map(|index| {
             let from = &self.attempts[index].parameters;
-            if let Some(next) = self.needed[index].and_then(|dl| opened(from, pinned, density, dl))
-                && fresh(&next)
-            {
-                return Some((next, "landmarks near enough to leave the gaps open"));
-            }
-            if self.symptoms[index].is_some_and(Symptom::is_of_scatter)
-                && let Some(noise) = self.prepared.noise()
-                && let Some(next) = widened(from, pinned, noise).filter(fresh)
-            {
-                return Some((next, "larger neighborhoods, as the points scatter"));
-            }
+            let known = self.known(density, self.needed[index]);
             let moves = self.symptoms[index].map_or(&[][..], Symptom::moves);
             moves.iter().find_map(|step| {
-                let next = step.apply(from, pinned, density).filter(fresh)?;
+                let next = step.apply(from, pinned, &known).filter(fresh)?;
                 Some((next, step.reason()))
             })
         })
@@ -92,10 +91,12 @@ impl Progress<'_> {
         let needed = self.needed.last().copied().flatten();
         let finer = match needed.filter(|_| time > 1) {
             Some(needed) => {
-                let needed = needed.min(RESOLVING * passed.dl);
-                opened(passed, &self.pinned, density, needed)
+                let known = self.known(density, Some(needed.min(RESOLVING * passed.dl)));
+                Move::Opened.apply(passed, &self.pinned, &known)
             }
-            None if time > CONFIRMING => Move::Smaller.apply(passed, &self.pinned, density),
+            None if time > CONFIRMING => {
+                Move::Smaller.apply(passed, &self.pinned, &self.known(density, None))
+            }
             None => None,
         };
         let other = || other_landmarks(passed, &self.pinned, time);
