@@ -12,7 +12,7 @@ use crosscap_algorithms::certificate::Verdict;
 use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::{
-    Analysis, AnalysisOptions, Analyzer, ChartSpace, Cut, StratifyOptions,
+    Analysis, AnalysisOptions, Analyzer, ChartSpace, Cut, ModelCounts, StratifyOptions,
 };
 use crosscap_algorithms::tiles::{
     BallQuestion, Candidates, Curves, Excerpt, Gathered, Question, Tiles, landmarks,
@@ -213,7 +213,7 @@ impl Asked<'_> {
             report.candidates = analysis.candidates();
             report.curve_points = analysis.curve_points();
             report.unexplained = analysis.unexplained().len();
-            report.models = analysis.models().to_vec();
+            report.models = ModelCounts::with_later(analysis.models(), &made.waist.models);
             report.plugins.estimator = Some(found.estimator.into());
         }
         Ok(Outcome {

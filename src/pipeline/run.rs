@@ -17,7 +17,7 @@ use crosscap_algorithms::neighborhood::{
 };
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::{
-    Analysis, AnalysisOptions, Analyzer, ChartSpace, Ground, StratifyOptions,
+    Analysis, AnalysisOptions, Analyzer, ChartSpace, Ground, ModelCounts, StratifyOptions,
 };
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{DimensionEstimator, Error, LocalChart, Mesh, Row, Table};
@@ -223,7 +223,7 @@ impl Parts {
             candidates: analysis.candidates(),
             curve_points: analysis.curve_points(),
             unexplained: analysis.unexplained().len(),
-            models: analysis.models().to_vec(),
+            models: ModelCounts::with_later(analysis.models(), &made.waist.models),
             landmarks: made.waist.counts,
             added_landmarks: made.added.len(),
             triangulation: made.triangulation.counts,

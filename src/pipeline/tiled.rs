@@ -118,6 +118,7 @@ impl Maker for Tiled<'_> {
         let mut found = Stratification::new(waist, rows.collect());
         found.counts.cut_edges = of_curves.cut_edges;
         found.points = self.curves.map_or(Vec::new(), Curves::points);
+        found.models = self.curves.map_or(&[][..], Curves::models).to_vec();
         found.check("tiles", self.tiles.points())?;
         Ok(found)
     }

@@ -1,5 +1,6 @@
 //! A waist, and what ties it to the points.
 
+use super::analysis::ModelCounts;
 use crosscap_core::{Error, Landmark, Link, Row, Scalar, StratifiedLandmarks, Table};
 use serde::{Deserialize, Serialize};
 
@@ -45,6 +46,8 @@ pub struct Stratification<S> {
     pub points: Vec<PointStratum>,
     /// Counts for the report.
     pub counts: StratifyCounts,
+    /// What became of every model that was asked after the analysis; nothing where none was.
+    pub models: Vec<ModelCounts>,
 }
 
 impl<S: Scalar> Stratification<S> {
@@ -68,6 +71,7 @@ impl<S: Scalar> Stratification<S> {
             waist,
             rows,
             points: Vec::new(),
+            models: Vec::new(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! From strata to the narrow waist: landmarks, their neighborhoods, distances.
 
-use super::analysis::{Analysis, Analyzer};
+use super::analysis::{Analysis, Analyzer, ModelCounts};
 use super::atlas::Reference;
 use super::cells::{Contacts, Found, Labels, Neighborhoods};
 use super::charts::ChartSpace;
@@ -47,6 +47,7 @@ pub struct Cut<'a, 'p, S: Scalar> {
     chosen: Vec<Row>,
     charts: ChartSpace<'a, S>,
     pub(super) options: StratifyOptions,
+    models: Vec<ModelCounts>,
 }
 
 impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
@@ -99,7 +100,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         let dl = options.dl;
         let gap = 2.0 * tuning.skeleton.node_spacing * dl;
         let mut strata = Strata::of(analysis, space.places(), gap, dl);
-        curve_ends::explain(analyzer, analysis, &mut strata)?;
+        let models = curve_ends::explain(analyzer, analysis, &mut strata)?;
         let skeleton = Skeleton::lay(analyzer, &strata, dl)?;
         let fits: Vec<&Reference> = skeleton.labelling().collect();
         let reach = tuning.cells.label_reach;
@@ -114,6 +115,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
             chosen: Vec::new(),
             charts,
             options: options.clone(),
+            models,
         })
     }
 
@@ -149,6 +151,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
             chosen: landmarks,
             charts,
             options: options.clone(),
+            models: Vec::new(),
         })
     }
 
@@ -224,6 +227,7 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
         let mut out = Stratification::new(waist, rows);
         out.counts.cut_edges = cut_edges;
         out.points = self.points();
+        out.models = self.models.clone();
         Ok(out)
     }
 }
@@ -235,6 +239,11 @@ impl<S: Scalar> Cut<'_, '_, S> {
         strata.as_mut_slice()[..self.skeleton.rows().len()].fill(1);
         strata.as_mut_slice()[..self.skeleton.corners()].fill(0);
         strata
+    }
+
+    /// What became of the models that were asked about the ends of curves.
+    pub(crate) fn models(&self) -> &[ModelCounts] {
+        &self.models
     }
 
     /// The points that models call 0-strata.

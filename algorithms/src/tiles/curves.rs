@@ -4,7 +4,7 @@ use super::excerpt::Excerpt;
 use super::gathered::Gathered;
 use super::row::CloudRow;
 use crate::balls::BallTree;
-use crate::stratify::{Cut, PointStratum, StratifyOptions};
+use crate::stratify::{Cut, ModelCounts, PointStratum, StratifyOptions};
 use crate::tuning::CellTuning;
 use crosscap_core::{CellNeighborhood, CurveEdge, Error, Landmark, Row, Table};
 
@@ -102,6 +102,11 @@ impl<'c> Curves<'c> {
     pub fn barred(&self) -> Vec<CloudRow> {
         let rows = self.cut.barred().into_iter();
         rows.map(|row| self.excerpt.in_cloud(row)).collect()
+    }
+
+    /// What became of the models that were asked about the ends of curves.
+    pub fn models(&self) -> &[ModelCounts] {
+        self.cut.models()
     }
 
     /// The points that models call 0-strata.

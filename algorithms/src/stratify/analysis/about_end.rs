@@ -2,9 +2,10 @@
 
 use super::fitter::{Fitter, Scratch, View};
 use crate::audit;
-use crate::stratify::curve_ends::{EndRegion, Settled};
+use crate::stratify::curve_ends::{EndFound, EndRegion, Settled};
 use crate::stratify::site::{FitUsed, On, StratumKind};
 use crosscap_core::{Decomposition, Label, Located, Neighbor, Rejection, Row, Scalar};
+use std::cmp::Ordering;
 
 /// A fit about an end.
 struct Shown {
@@ -24,17 +25,46 @@ struct Ball {
 }
 
 impl<S: Scalar> Fitter<'_, S> {
-    /// The region about the end of a curve at `row` by a model, and what becomes of its rows: first in the
-    /// ball of the given radius, then in one about the point that it shows, wider where the model asks for it.
-    /// `eps` is the radius of the analysis.
+    /// The region about the end of a curve at `row`, and what becomes of its rows, by that of some `models` which explains a ball of
+    /// the given radius best. `eps` is the radius of the analysis.
     pub(in crate::stratify) fn about_end(
+        &self,
+        models: &[usize],
+        row: Row,
+        radius: f64,
+        eps: f64,
+        scratch: &mut Scratch<S>,
+    ) -> Option<EndFound> {
+        let mut best: Option<EndFound> = None;
+        for &model in models {
+            let Some(found) = self.end_by(model, row, radius, eps, scratch) else {
+                continue;
+            };
+            let first = best.as_ref().is_none_or(|b| better(&found, b).is_lt());
+            let loser = match first {
+                true => best.replace(found),
+                false => Some(found),
+            };
+            if let Some((region, _)) = loser {
+                self.ledger.lost(region.used.model.into());
+            }
+        }
+        if let Some((region, _)) = &best {
+            self.ledger.won(region.used.model.into());
+        }
+        best
+    }
+
+    /// The same by one model: first in the ball of the given radius, then in one about the point that it shows, wider where the model
+    /// asks for it.
+    fn end_by(
         &self,
         model: usize,
         row: Row,
         radius: f64,
         eps: f64,
         scratch: &mut Scratch<S>,
-    ) -> Option<(EndRegion, Vec<Settled>)> {
+    ) -> Option<EndFound> {
         let tuning = &self.tuning.ends;
         let mut ball = Ball {
             center: row,
@@ -54,9 +84,12 @@ impl<S: Scalar> Fitter<'_, S> {
             };
             let far = |row: Row| self.far(row, &shown.place);
             let rows = scratch.near.iter().map(Neighbor::row);
-            let nearest = rows.min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)))?;
+            // The center is among them.
+            let nearest = rows.min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
+            let nearest = nearest.unwrap_or(ball.center);
             let shift = far(ball.center);
             if shift > tuning.off_center * ball.radius && nearest != ball.center {
+                self.ledger.lost(model);
                 ball.center = nearest;
                 continue;
             }
@@ -65,7 +98,12 @@ impl<S: Scalar> Fitter<'_, S> {
                 radius: eps,
             };
             let reach = ball.radius - shift;
-            return self.region(shown, [reach, reach + tuning.overlap * eps], used, scratch);
+            let reaches = [reach, reach + tuning.overlap * eps];
+            let found = self.region(shown, reaches, used, scratch);
+            if found.is_none() {
+                self.ledger.lost(model);
+            }
+            return found;
         }
         None
     }
@@ -92,14 +130,24 @@ impl<S: Scalar> Fitter<'_, S> {
         }
         let all: Vec<usize> = (0..scratch.near.len()).collect();
         let local = self.local(&view, engine, scratch);
+        self.ledger.asked(model);
         let (fit, located) = match engine.decompose_about(&local, &all) {
             Ok(found) => found,
-            Err(rejection) => return Some(Err(rejection)),
+            Err(rejection) => {
+                self.ledger.refused(model, &rejection);
+                return Some(Err(rejection));
+            }
         };
         let point = ball.center.index();
-        let fit = audit::sound(Ok(fit), &local, engine, point, &self.faults)?;
+        let Some(fit) = audit::sound(Ok(fit), &local, engine, point, &self.faults) else {
+            self.ledger.broken(model);
+            return None;
+        };
         let located = audit::placed(located, &all, &local, engine, point, &self.faults);
-        let to = fit.points.first()?;
+        let Some(to) = fit.points.first() else {
+            self.ledger.lost(model);
+            return None;
+        };
         let place = self.moved(ball.center, &view, local.point(view.center), to);
         Some(Ok(Shown {
             fit,
@@ -117,7 +165,7 @@ impl<S: Scalar> Fitter<'_, S> {
         [reach, known]: [f64; 2],
         used: FitUsed,
         scratch: &mut Scratch<S>,
-    ) -> Option<(EndRegion, Vec<Settled>)> {
+    ) -> Option<EndFound> {
         let Shown {
             mut fit,
             located,
@@ -154,6 +202,13 @@ impl<S: Scalar> Fitter<'_, S> {
         let squares = own.zip(place).map(|(x, p)| (x - p) * (x - p));
         squares.sum::<f64>().sqrt()
     }
+}
+
+/// The order of what two models show of one end; that of the models changes nothing.
+fn better(a: &EndFound, b: &EndFound) -> Ordering {
+    let [a, b] = [&a.0.fit, &b.0.fit];
+    let order = a.residual.total_cmp(&b.residual);
+    order.then(a.parameters.cmp(&b.parameters))
 }
 
 /// What becomes of a row that a fit has located.

@@ -91,7 +91,7 @@ impl<'a, S: Scalar> Fitter<'a, S> {
     }
 
     /// What became of every model so far.
-    pub(super) fn counts(&self) -> Vec<ModelCounts> {
+    pub(in crate::stratify) fn counts(&self) -> Vec<ModelCounts> {
         self.ledger.counts(self.models)
     }
 

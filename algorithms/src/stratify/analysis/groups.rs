@@ -8,7 +8,7 @@ use crate::execute;
 use crosscap_core::{Row, Scalar, Table};
 
 /// Fits that a job takes at a time.
-const FITS_AT_ONCE: usize = 8;
+pub(super) const FITS_AT_ONCE: usize = 8;
 
 /// A row that is to be explained.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -32,6 +32,30 @@ pub struct ModelCounts {
     pub other: usize,
 }
 
+impl ModelCounts {
+    /// The counts of all models with those of a later stage, which asked the same models in the same order, or none.
+    pub fn with_later(first: &[Self], later: &[Self]) -> Vec<Self> {
+        let mut all = first.to_vec();
+        for (counts, more) in all.iter_mut().zip(later) {
+            counts.add(more);
+        }
+        all
+    }
+
+    fn add(&mut self, more: &Self) {
+        self.asked += more.asked;
+        self.won += more.won;
+        self.lost += more.lost;
+        self.broken += more.broken;
+        self.too_few_points += more.too_few_points;
+        self.no_real_solution += more.no_real_solution;
+        self.poor_fit += more.poor_fit;
+        self.simpler_model_fits += more.simpler_model_fits;
+        self.empty_stratum += more.empty_stratum;
+        self.other += more.other;
+    }
+}
+
 /// What happened to one request.
 #[derive(Clone, Copy)]
 enum Entry {

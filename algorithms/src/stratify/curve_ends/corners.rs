@@ -1,7 +1,7 @@
 //! Corners of boundaries that were found.
 
 use super::part::Answer;
-use super::region::Found;
+use super::region::EndFound;
 use crate::balls::BallTree;
 use crate::stratify::analysis::{Analysis, Analyzer, Fitter, Scratch};
 use crate::stratify::site::StratumKind;
@@ -47,10 +47,8 @@ pub(super) fn answers<S: Scalar>(
             continue;
         }
         asked[k] = true;
-        let mut found = |factor: &f64| -> Option<Found> {
-            let one = |&m: &usize| fitter.about_end(m, row, factor * eps, eps, &mut scratch);
-            let better = |a: &Found, b: &Found| a.0.fit.residual.total_cmp(&b.0.fit.residual);
-            models.iter().filter_map(one).min_by(better)
+        let mut found = |factor: &f64| -> Option<EndFound> {
+            fitter.about_end(models, row, factor * eps, eps, &mut scratch)
         };
         let Some((region, settled)) = tuning.corner_radii.iter().find_map(&mut found) else {
             continue;

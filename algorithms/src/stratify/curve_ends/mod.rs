@@ -10,19 +10,18 @@ mod region;
 mod wards;
 
 pub(super) use innermost::innermost;
-pub(super) use region::{EndRegion, Settled};
+pub(super) use region::{EndFound, EndRegion, Settled};
 pub(super) use wards::Wards;
 
-use super::analysis::{Analysis, Analyzer, Fitter, Scratch};
+use super::analysis::{Analysis, Analyzer, Fitter, ModelCounts, Scratch};
 use super::site::{Site, StratumKind};
 use super::strata::Strata;
 use crosscap_core::{Error, Row, Scalar};
 use free::End;
 use part::Answer;
-use region::Found;
 
-/// Asks what is at the ends of double curves and about points of boundaries that were found, and enters the answers. Where no curve
-/// was found, or no model knows of ends, nothing is done.
+/// Asks what is at the ends of double curves and about points of boundaries that were found, and enters the answers; says what became of
+/// the models that were asked. Where no curve was found, or no model knows of ends, nothing is done.
 ///
 /// # Errors
 /// [`Error::Law`] for what a model breaks.
@@ -30,7 +29,7 @@ pub(super) fn explain<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
     analysis: &Analysis,
     strata: &mut Strata,
-) -> Result<(), Error> {
+) -> Result<Vec<ModelCounts>, Error> {
     let all = 0..analyzer.models.len();
     let (corners, ends): (Vec<usize>, Vec<usize>) = all
         .filter(|&m| analyzer.models[m].explains_ends())
@@ -40,7 +39,7 @@ pub(super) fn explain<S: Scalar>(
     let has_ends = !ends.is_empty() && any(StratumKind::Curve);
     let has_corners = !corners.is_empty() && any(StratumKind::Boundary);
     if !has_ends && !has_corners {
-        return Ok(());
+        return Ok(Vec::new());
     }
     let fitter = analyzer.fitter("since ends of curves are looked at in them")?;
     let tuning = &analyzer.tuning.ends;
@@ -64,7 +63,8 @@ pub(super) fn explain<S: Scalar>(
     if !strata.regions().is_empty() {
         fitter.continue_boundaries(analysis, strata);
     }
-    fitter.faults.none()
+    fitter.faults.none()?;
+    Ok(fitter.counts())
 }
 
 /// What the `models` say about the ends of double curves.
@@ -78,16 +78,8 @@ fn of_curves<S: Scalar>(
     let mut scratch = Scratch::default();
     let mut answers: Vec<Answer> = Vec::new();
     for End { row, behind, eps } in free::ends(analyzer, strata) {
-        let mut asked = |row: Row, radius: f64| {
-            let one = |&m: &usize| fitter.about_end(m, row, radius, eps, &mut scratch);
-            // The order of the models changes nothing.
-            let better = |a: &Found, b: &Found| {
-                let [a, b] = [&a.0.fit, &b.0.fit];
-                let order = a.residual.total_cmp(&b.residual);
-                order.then(a.parameters.cmp(&b.parameters))
-            };
-            models.iter().filter_map(one).min_by(better)
-        };
+        let mut asked =
+            |row: Row, radius: f64| fitter.about_end(models, row, radius, eps, &mut scratch);
         let mut about =
             |row: Row| (tuning.radii.iter()).find_map(|factor| asked(row, factor * eps));
         let found = about(row).or_else(|| about(behind?));

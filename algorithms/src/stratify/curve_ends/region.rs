@@ -30,7 +30,7 @@ pub(in crate::stratify) struct Settled {
 }
 
 /// A region, and what becomes of its rows.
-pub(super) type Found = (EndRegion, Vec<Settled>);
+pub(in crate::stratify) type EndFound = (EndRegion, Vec<Settled>);
 
 impl EndRegion {
     /// The rows nearer than `reach` to `place`, each with its label and by row, some beyond, the strata that the
