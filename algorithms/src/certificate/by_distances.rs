@@ -25,16 +25,7 @@ pub fn certify_by_distances<S: Scalar>(
     oracle: &dyn NeighborhoodOracle<Scalar = S>,
     options: &CertificateOptions<'_>,
 ) -> Certificate {
-    let mut certificate = Certificate {
-        indices: indices::arrays(mesh, |_| Vec::new()),
-        edges: None,
-        links: None,
-        geometry: None,
-        cover: None,
-        faithful: None,
-        quality: None,
-        by_distances: None,
-    };
+    let mut certificate = Certificate::of_indices(indices::arrays(mesh, |_| Vec::new()));
     let rows: Option<Vec<usize>> = (mesh.point_index.iter())
         .map(|&row| usize::try_from(row).ok().filter(|&r| r < metric.len()))
         .collect();

@@ -37,6 +37,20 @@ pub struct Certificate {
 }
 
 impl Certificate {
+    /// Nothing asked yet but the indices.
+    pub(super) fn of_indices(indices: IndexReport) -> Self {
+        Self {
+            indices,
+            edges: None,
+            links: None,
+            geometry: None,
+            cover: None,
+            faithful: None,
+            quality: None,
+            by_distances: None,
+        }
+    }
+
     /// Everything that is wrong, in the order of the levels.
     pub fn violations(&self) -> impl Iterator<Item = &Violation> {
         let later = [

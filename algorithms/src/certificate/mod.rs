@@ -100,16 +100,7 @@ use places::coordinates;
 /// assert_eq!(certificate.violations().next().unwrap().kind, ViolationKind::UndeclaredBoundary);
 /// ```
 pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
-    let mut certificate = Certificate {
-        indices: indices::check(mesh),
-        edges: None,
-        links: None,
-        geometry: None,
-        cover: None,
-        faithful: None,
-        quality: None,
-        by_distances: None,
-    };
+    let mut certificate = Certificate::of_indices(indices::check(mesh));
     if let Some(fault) = options.fault(mesh) {
         certificate.indices.violations.push(fault);
         certificate.indices.usable = false;
@@ -144,11 +135,7 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
     let points = options.points.filter(|p| !p.is_empty());
     let of = (options.excerpt).map_or(points.map_or(0, PointCloud::len), |part| part.of);
     let feet = points.map(|points| {
-        let rows = match options.excerpt {
-            Some(part) => part.looked_at.to_vec(),
-            None => evidence_rows(of, &options.limits),
-        };
-        let rows = rows.into_iter();
+        let rows = looked_at(of, options).into_iter();
         Footprints::new(mesh, &incidence, &frame, &all, &bare, points, rows)
     });
     let ground = feet.as_ref().map(|f| Ground::new(mesh, &incidence, f));
@@ -162,16 +149,17 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
         .then_some(())
         .and(search.as_ref())
         .zip(points);
+    let is_opening = |part: &[u32]| {
+        opening.is_some_and(|(search, points)| {
+            search.is_opening(points, part, options.limits.significance)
+        })
+    };
     certificate.edges = Some(edges::check(
         mesh,
         &incidence,
         options.closed,
         options.limits.shortest_boundary,
-        &|part| {
-            opening.is_some_and(|(search, points)| {
-                search.is_opening(points, part, options.limits.significance)
-            })
-        },
+        &is_opening,
     ));
     certificate.cover = Some(cover::check(
         mesh,
@@ -185,4 +173,12 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
         .map(|search| faithful::check(&search, of, options));
     certificate.quality = Some(quality);
     certificate
+}
+
+/// The points whose places on the mesh are looked up, of so many.
+fn looked_at(of: usize, options: &CertificateOptions<'_>) -> Vec<usize> {
+    match options.excerpt {
+        Some(part) => part.looked_at.to_vec(),
+        None => evidence_rows(of, &options.limits),
+    }
 }

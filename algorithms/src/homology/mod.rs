@@ -176,6 +176,9 @@ pub(crate) fn bare_edges(complex: &Complex, sides: &Sides) -> Vec<[u32; 2]> {
         .collect()
 }
 
+/// The column of a region that a free side eliminates.
+const OPEN: u32 = u32::MAX;
+
 /// Reduces d2 to a matrix over the regions (steps 1 to 3 of the module's text): the number of
 /// columns, the rows, and how many invariant factors 1 were split off on the way.
 fn regions(triangles: usize, sides: &Sides) -> (usize, Vec<smith::Row>, usize) {
@@ -193,8 +196,7 @@ fn regions(triangles: usize, sides: &Sides) -> (usize, Vec<smith::Row>, usize) {
             }
         }
     }
-    // Column of each region, at its representative; OPEN where a free side eliminates it.
-    const OPEN: u32 = u32::MAX;
+    // Column of each region, at its representative.
     let mut column_of = vec![0u32; triangles];
     for e in 0..sides.edges.len() {
         if let &[s] = sides.at(e) {
@@ -212,7 +214,6 @@ fn regions(triangles: usize, sides: &Sides) -> (usize, Vec<smith::Row>, usize) {
             columns += 1;
         }
     }
-    let mut rows: Vec<smith::Row> = Vec::new();
     let mut doubled: Vec<u32> = twisted
         .iter()
         .map(|&t| column_of[sets.find(t).0 as usize])
@@ -220,9 +221,14 @@ fn regions(triangles: usize, sides: &Sides) -> (usize, Vec<smith::Row>, usize) {
         .collect();
     doubled.sort_unstable();
     doubled.dedup();
-    rows.extend(doubled.into_iter().map(|c| vec![(c, 2)]));
+    let mut rows: Vec<smith::Row> = doubled.into_iter().map(|c| vec![(c, 2)]).collect();
+    rows.extend(rows_at_curves(sides, &mut sets, &column_of));
+    (columns as usize, rows, ones)
+}
 
-    // Rows of edges with three or more triangles, one after the other in a single block.
+/// Different rows of edges with three or more triangles, in order.
+fn rows_at_curves(sides: &Sides, sets: &mut SignedUnion, column_of: &[u32]) -> Vec<smith::Row> {
+    // One after the other in a single block.
     let mut entries: Vec<(u32, i64)> = Vec::new();
     let mut ranges: Vec<(usize, usize)> = Vec::new();
     let mut row: Vec<(u32, i64)> = Vec::new();
@@ -258,8 +264,8 @@ fn regions(triangles: usize, sides: &Sides) -> (usize, Vec<smith::Row>, usize) {
     }
     ranges.sort_unstable_by(|x, y| entries[x.0..x.1].cmp(&entries[y.0..y.1]));
     ranges.dedup_by(|x, y| entries[x.0..x.1] == entries[y.0..y.1]);
-    rows.extend(ranges.iter().map(|&(from, to)| entries[from..to].to_vec()));
-    (columns as usize, rows, ones)
+    let row = |&(from, to): &(usize, usize)| entries[from..to].to_vec();
+    ranges.iter().map(row).collect()
 }
 
 #[cfg(test)]

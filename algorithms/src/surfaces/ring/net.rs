@@ -51,45 +51,12 @@ impl Net {
         separation: f64,
         random: &mut Random,
     ) -> Result<Self, RingError> {
-        let n = ring.fixed.coordinates();
-        let mut best = f64::INFINITY;
-        let mut seeds = Vec::new();
-        for _ in 0..STARTS {
-            match ring.seed(random) {
-                Ok(place) => seeds.push(place),
-                Err(deviation) => best = best.min(deviation),
-            }
-        }
-        if seeds.is_empty() {
-            return Err(RingError::NotClosed {
-                starts: STARTS,
-                deviation: best,
-            });
-        }
-        let mut covariance = DMatrix::<f64>::zeros(n, n);
-        for s in &seeds {
-            for i in 0..n {
-                for j in 0..n {
-                    covariance[(i, j)] += s[i] * s[j];
-                }
-            }
-        }
-        let eigen = covariance.symmetric_eigen();
-        let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-        let axis = |k: usize| {
-            eigen
-                .eigenvectors
-                .column(order[k])
-                .iter()
-                .copied()
-                .collect()
-        };
+        let seeds = seeds(ring, random)?;
         let mut net = Self {
             separation,
             charts: Vec::new(),
             margin: f64::INFINITY,
-            axes: [0, 1, 2].map(axis),
+            axes: widest(ring.fixed.coordinates(), &seeds),
             cells: HashMap::new(),
         };
         let (starts, mut singular) = (seeds.len(), 0);
@@ -218,21 +185,7 @@ impl Net {
     /// Charts whose discs may meet are on one sheet when a chain of charts near both of them says so. Beside a double curve
     /// this tells the sheets apart however near to it the charts are.
     pub fn sheets(&self) -> Sheets {
-        let reach = MEET * self.separation;
-        let count = self.charts.len();
-        let near: Vec<Vec<u32>> = (0..count)
-            .map(|k| {
-                let here = &self.charts[k];
-                let meets = |&o: &u32| {
-                    let there = &self.charts[o as usize];
-                    let reach = 0.5 * (here.scale + there.scale) * reach;
-                    o as usize != k && squared_distance(&here.center, &there.center) < reach * reach
-                };
-                let mut near: Vec<u32> = self.near(&here.center, reach).filter(meets).collect();
-                near.sort_unstable();
-                near
-            })
-            .collect();
+        let near = self.meeting();
         let mut scratch = self.charts[0].center.clone();
         let next: Vec<Vec<u32>> = near
             .iter()
@@ -242,27 +195,36 @@ impl Net {
                 near.iter().filter(same).copied().collect()
             })
             .collect();
-        let beside: Vec<Vec<u32>> = (0..count)
-            .map(|k| {
-                // The charts near k that a chain of charts near it leads to.
-                let mut reached = vec![false; near[k].len()];
-                let mut stack = vec![k];
-                while let Some(at) = stack.pop() {
-                    for &o in &next[at] {
-                        if let Ok(place) = near[k].binary_search(&o)
-                            && !reached[place]
-                        {
-                            reached[place] = true;
-                            stack.push(o as usize);
-                        }
-                    }
-                }
-                let each = near[k].iter().zip(reached);
-                each.filter(|(_, reached)| *reached)
-                    .map(|(&o, _)| o)
-                    .collect()
-            })
-            .collect();
+        let (piece, pieces) = self.pieces(&next);
+        Sheets {
+            beside: (0..near.len())
+                .map(|k| reached(k, &near[k], &next))
+                .collect(),
+            piece,
+            pieces,
+        }
+    }
+
+    /// For each chart those whose discs may meet its own, increasing.
+    fn meeting(&self) -> Vec<Vec<u32>> {
+        let reach = MEET * self.separation;
+        let of = |k: usize| {
+            let here = &self.charts[k];
+            let meets = |&o: &u32| {
+                let there = &self.charts[o as usize];
+                let reach = 0.5 * (here.scale + there.scale) * reach;
+                o as usize != k && squared_distance(&here.center, &there.center) < reach * reach
+            };
+            let mut near: Vec<u32> = self.near(&here.center, reach).filter(meets).collect();
+            near.sort_unstable();
+            near
+        };
+        (0..self.charts.len()).map(of).collect()
+    }
+
+    /// For each chart the piece that it is joined to by those of the same sheet, and how many pieces there are.
+    fn pieces(&self, next: &[Vec<u32>]) -> (Vec<u32>, usize) {
+        let count = self.charts.len();
         let mut union = petgraph::unionfind::UnionFind::<u32>::new(count);
         for (k, next) in next.iter().enumerate() {
             for &o in next {
@@ -280,7 +242,7 @@ impl Net {
             let here = &self.charts[k].center;
             let far = |o: u32| squared_distance(here, &self.charts[o as usize].center);
             let nearest = self
-                .near(here, reach)
+                .near(here, MEET * self.separation)
                 .filter(|&o| size[root[o as usize] as usize] >= CRUMB)
                 .min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
             if let Some(o) = nearest {
@@ -297,10 +259,68 @@ impl Net {
         for (k, &r) in roots.iter().enumerate() {
             rank[r as usize] = k as u32;
         }
-        Sheets {
-            beside,
-            piece: root.iter().map(|&r| rank[r as usize]).collect(),
-            pieces: roots.len(),
+        (
+            root.iter().map(|&r| rank[r as usize]).collect(),
+            roots.len(),
+        )
+    }
+}
+
+/// Random conformations to start from.
+fn seeds(ring: &RingConformations, random: &mut Random) -> Result<Vec<Vec<f64>>, RingError> {
+    let mut best = f64::INFINITY;
+    let mut seeds = Vec::new();
+    for _ in 0..STARTS {
+        match ring.seed(random) {
+            Ok(place) => seeds.push(place),
+            Err(deviation) => best = best.min(deviation),
         }
     }
+    match seeds.is_empty() {
+        true => Err(RingError::NotClosed {
+            starts: STARTS,
+            deviation: best,
+        }),
+        false => Ok(seeds),
+    }
+}
+
+/// The three directions along which places of `n` coordinates spread most.
+fn widest(n: usize, places: &[Vec<f64>]) -> [Vec<f64>; 3] {
+    let mut covariance = DMatrix::<f64>::zeros(n, n);
+    for s in places {
+        for i in 0..n {
+            for j in 0..n {
+                covariance[(i, j)] += s[i] * s[j];
+            }
+        }
+    }
+    let eigen = covariance.symmetric_eigen();
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    let axis = |k: usize| {
+        let column = eigen.eigenvectors.column(order[k]);
+        column.iter().copied().collect()
+    };
+    [0, 1, 2].map(axis)
+}
+
+/// Those of the charts `near` chart k that a chain of them leads to, by the steps `next` of each chart.
+fn reached(k: usize, near: &[u32], next: &[Vec<u32>]) -> Vec<u32> {
+    let mut reached = vec![false; near.len()];
+    let mut stack = vec![k];
+    while let Some(at) = stack.pop() {
+        for &o in &next[at] {
+            if let Ok(place) = near.binary_search(&o)
+                && !reached[place]
+            {
+                reached[place] = true;
+                stack.push(o as usize);
+            }
+        }
+    }
+    let each = near.iter().zip(reached);
+    each.filter(|(_, reached)| *reached)
+        .map(|(&o, _)| o)
+        .collect()
 }
