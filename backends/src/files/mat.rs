@@ -8,6 +8,7 @@ use super::error::{Flaw, Parsed};
 use super::npy::{Array, Numbers};
 use super::npz::LARGEST_INFLATION;
 use flate2::read::ZlibDecoder;
+use std::borrow::Cow;
 use std::io::Read;
 
 const MATRIX: u32 = 14;
@@ -15,6 +16,48 @@ const COMPRESSED: u32 = 15;
 
 /// Reads the matrix called `name`; without a name `points`, `vertices`, or the only one there is.
 pub(crate) fn parse(bytes: &[u8], name: Option<&str>) -> Parsed<Array> {
+    let big = is_big_endian(bytes)?;
+    let mut found: Option<(String, Array)> = None;
+    let mut names = Vec::new();
+    let mut cursor = Cursor {
+        rest: &bytes[128..],
+        big,
+    };
+    while !cursor.rest.is_empty() {
+        let Some(data) = cursor.matrix()? else {
+            continue;
+        };
+        let Some((variable, array)) = matrix(&data, big, name)? else {
+            continue;
+        };
+        names.push(variable.clone());
+        let better = found
+            .as_ref()
+            .is_none_or(|(best, _)| rank(&variable) < rank(best));
+        if let Some(array) = array.filter(|_| better) {
+            found = Some((variable, array));
+        }
+    }
+    match (found, name, names.len()) {
+        (Some((_, array)), Some(_), _) | (Some((_, array)), None, 1) => Ok(array),
+        (Some((best, array)), None, _) if rank(&best) < UNKNOWN => Ok(array),
+        (Some(_), None, _) => Err(Flaw::new(
+            format!("the matrices [{}]", names.join(", ")),
+            "one, or one named points or vertices, or the name of the one to take",
+        )),
+        (None, Some(name), _) => Err(Flaw::new(
+            format!("the matrices [{}]", names.join(", ")),
+            format!("a real matrix named {name}"),
+        )),
+        (None, None, _) => Err(Flaw::new(
+            "no real numeric matrix of 2 dimensions",
+            "one, with a point a row",
+        )),
+    }
+}
+
+/// Whether the numbers of the file start with their highest byte, by its header.
+fn is_big_endian(bytes: &[u8]) -> Parsed<bool> {
     if bytes.is_empty() {
         return Err(Flaw::new("an empty file", "a MATLAB file of version 5"));
     }
@@ -44,63 +87,7 @@ pub(crate) fn parse(bytes: &[u8], name: Option<&str>) -> Parsed<Array> {
             "version 5: save it with the option -v7",
         ));
     }
-    let mut found: Option<(String, Array)> = None;
-    let mut names = Vec::new();
-    let mut cursor = Cursor {
-        rest: &bytes[128..],
-        big,
-    };
-    while !cursor.rest.is_empty() {
-        let (kind, data) = cursor.element(true)?;
-        let inflated;
-        let data = match kind {
-            MATRIX => data,
-            COMPRESSED => {
-                inflated = inflate(data, big)?;
-                match inflated.first_chunk::<8>() {
-                    Some(_) => {
-                        let mut inner = Cursor {
-                            rest: &inflated,
-                            big,
-                        };
-                        let (kind, data) = inner.element(true)?;
-                        if kind != MATRIX {
-                            continue;
-                        }
-                        data
-                    }
-                    None => continue,
-                }
-            }
-            _ => continue,
-        };
-        let Some((variable, array)) = matrix(data, big, name)? else {
-            continue;
-        };
-        names.push(variable.clone());
-        let better = found
-            .as_ref()
-            .is_none_or(|(best, _)| rank(&variable) < rank(best));
-        if let Some(array) = array.filter(|_| better) {
-            found = Some((variable, array));
-        }
-    }
-    match (found, name, names.len()) {
-        (Some((_, array)), Some(_), _) | (Some((_, array)), None, 1) => Ok(array),
-        (Some((best, array)), None, _) if rank(&best) < UNKNOWN => Ok(array),
-        (Some(_), None, _) => Err(Flaw::new(
-            format!("the matrices [{}]", names.join(", ")),
-            "one, or one named points or vertices, or the name of the one to take",
-        )),
-        (None, Some(name), _) => Err(Flaw::new(
-            format!("the matrices [{}]", names.join(", ")),
-            format!("a real matrix named {name}"),
-        )),
-        (None, None, _) => Err(Flaw::new(
-            "no real numeric matrix of 2 dimensions",
-            "one, with a point a row",
-        )),
-    }
+    Ok(big)
 }
 
 /// Rank of a name that says nothing.
@@ -153,6 +140,31 @@ struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
+    /// The content of the next variable, inflated where that is needed; `None` where it is no matrix.
+    fn matrix(&mut self) -> Parsed<Option<Cow<'a, [u8]>>> {
+        let (kind, data) = self.element(true)?;
+        match kind {
+            MATRIX => Ok(Some(Cow::Borrowed(data))),
+            COMPRESSED => {
+                let mut inflated = inflate(data, self.big)?;
+                if inflated.first_chunk::<8>().is_none() {
+                    return Ok(None);
+                }
+                let mut inner = Cursor {
+                    rest: &inflated,
+                    big: self.big,
+                };
+                let (kind, data) = inner.element(true)?;
+                // Behind its type and size.
+                let content = 8..8 + data.len();
+                inflated.truncate(content.end);
+                inflated.drain(..content.start);
+                Ok((kind == MATRIX).then_some(Cow::Owned(inflated)))
+            }
+            _ => Ok(None),
+        }
+    }
+
     /// Type and data of the next element, padding skipped. Compressed elements have no padding.
     fn element(&mut self, top: bool) -> Parsed<(u32, &'a [u8])> {
         let truncated = |found: usize, wanted: usize| {
@@ -222,7 +234,22 @@ fn matrix(data: &[u8], big: bool, wanted: Option<&str>) -> Parsed<Option<(String
         return Ok(Some((name, None)));
     }
     let (kind, data) = cursor.element(false).map_err(|f| f.within(&name))?;
-    // MATLAB stores a column after the other, in the narrowest type that holds the values.
+    let numbers = numbers(kind, data, big).map_err(|f| f.within(&name))?;
+    let count = numbers.len();
+    if rows.checked_mul(columns) != Some(count) {
+        return Err(Flaw::new(
+            format!("{count} numbers"),
+            format!("{rows} x {columns}, as its header promises"),
+        )
+        .within(&name));
+    }
+    // MATLAB stores a column after the other.
+    let array = Array::new(vec![rows, columns], numbers.transposed(columns, rows));
+    Ok(Some((name, Some(array))))
+}
+
+/// The numbers of an element of a type: MATLAB takes the narrowest one that holds the values.
+fn numbers(kind: u32, data: &[u8], big: bool) -> Parsed<Numbers> {
     macro_rules! all {
         ($type:ty, $width:literal) => {
             data.as_chunks::<$width>().0.iter().map(|&c| {
@@ -234,7 +261,7 @@ fn matrix(data: &[u8], big: bool, wanted: Option<&str>) -> Parsed<Option<(String
             })
         };
     }
-    let numbers = match kind {
+    Ok(match kind {
         1 => Numbers::F64(all!(i8, 1).map(f64::from).collect()),
         2 => Numbers::F64(all!(u8, 1).map(f64::from).collect()),
         3 => Numbers::F64(all!(i16, 2).map(f64::from).collect()),
@@ -246,21 +273,12 @@ fn matrix(data: &[u8], big: bool, wanted: Option<&str>) -> Parsed<Option<(String
         12 => Numbers::F64(all!(i64, 8).map(|x| x as f64).collect()),
         13 => Numbers::F64(all!(u64, 8).map(|x| x as f64).collect()),
         _ => {
-            return Err(
-                Flaw::new(format!("data of type {kind}"), "a type of number").within(&name),
-            );
+            return Err(Flaw::new(
+                format!("data of type {kind}"),
+                "a type of number",
+            ));
         }
-    };
-    let count = numbers.len();
-    if rows.checked_mul(columns) != Some(count) {
-        return Err(Flaw::new(
-            format!("{count} numbers"),
-            format!("{rows} x {columns}, as its header promises"),
-        )
-        .within(&name));
-    }
-    let array = Array::new(vec![rows, columns], numbers.transposed(columns, rows));
-    Ok(Some((name, Some(array))))
+    })
 }
 
 #[cfg(test)]

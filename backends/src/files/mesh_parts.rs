@@ -46,45 +46,10 @@ impl Parts {
         let vertices = any_cloud::points(self.dimension, self.coordinates)
             .map_err(|flaw| flaw.within("vertices"))?;
         let count = vertices.len();
-        let triangles = self
-            .triangles
-            .iter()
-            .enumerate()
-            .map(|(at, corners)| {
-                let mut t = indices(*corners, count, "triangles", at)?;
-                t.sort_unstable();
-                if t[0] == t[1] || t[1] == t[2] {
-                    return Err(Flaw::row(
-                        "triangles",
-                        at,
-                        None,
-                        format!("corners {corners:?}"),
-                        "three different ones",
-                    ));
-                }
-                Ok(t)
-            })
-            .collect::<Parsed<Vec<_>>>()?;
+        let triangles = triangles(&self.triangles, count)?;
         let census = census(&triangles);
-        let curves = match self.curves {
-            Some(raw) => raw
-                .iter()
-                .enumerate()
-                .map(|(at, (ends, cells))| {
-                    let [a, b] = indices(*ends, count, "curve edges", at)?;
-                    let cells = cells.unwrap_or_else(|| triangles_at(&census, a, b));
-                    let cells = u8::try_from(cells).map_err(|_| {
-                        Flaw::row(
-                            "curve edges",
-                            at,
-                            None,
-                            format!("{cells} cells"),
-                            "0 to 255 cells that meet",
-                        )
-                    })?;
-                    Ok(CurveEdge::new(a, b, cells))
-                })
-                .collect::<Parsed<Vec<_>>>()?,
+        let curves = match &self.curves {
+            Some(raw) => curves(raw, count, &census)?,
             None => deduced(&census)?,
         };
         let of_length = |name: &str, all: Vec<i64>, wanted: usize| {
@@ -119,6 +84,44 @@ impl Parts {
             },
         })
     }
+}
+
+/// Triangles of so many vertices, the corners of each in order.
+fn triangles(raw: &[[i64; 3]], vertices: usize) -> Parsed<Vec<[u32; 3]>> {
+    let one = |(at, corners): (usize, &[i64; 3])| {
+        let mut t = indices(*corners, vertices, "triangles", at)?;
+        t.sort_unstable();
+        if t[0] == t[1] || t[1] == t[2] {
+            return Err(Flaw::row(
+                "triangles",
+                at,
+                None,
+                format!("corners {corners:?}"),
+                "three different ones",
+            ));
+        }
+        Ok(t)
+    };
+    raw.iter().enumerate().map(one).collect()
+}
+
+/// Curve edges of so many vertices; where a file does not say how many cells meet in one, as many as it has triangles.
+fn curves(raw: &[RawCurve], vertices: usize, census: &[([u32; 2], i64)]) -> Parsed<Vec<CurveEdge>> {
+    let one = |(at, (ends, cells)): (usize, &RawCurve)| {
+        let [a, b] = indices(*ends, vertices, "curve edges", at)?;
+        let cells = cells.unwrap_or_else(|| triangles_at(census, a, b));
+        let cells = u8::try_from(cells).map_err(|_| {
+            Flaw::row(
+                "curve edges",
+                at,
+                None,
+                format!("{cells} cells"),
+                "0 to 255 cells that meet",
+            )
+        })?;
+        Ok(CurveEdge::new(a, b, cells))
+    };
+    raw.iter().enumerate().map(one).collect()
 }
 
 fn indices<const K: usize>(

@@ -40,6 +40,7 @@ mod pcd;
 mod ply;
 mod ply_reader;
 mod point_rows;
+mod point_writer;
 mod points;
 mod remark;
 mod stl;
@@ -64,8 +65,7 @@ pub use mesh_npz::NO_TRIANGLES;
 pub use mesh_parts::{MeshExtras, MeshFile};
 pub use molecule::{Molecule, read_molecule};
 pub use point_rows::PointRows;
-pub use points::{
-    POINT_EXTENSIONS, PointFile, PointOptions, read_point_file, read_points, write_points,
-};
+pub use point_writer::write_points;
+pub use points::{POINT_EXTENSIONS, PointFile, PointOptions, read_point_file, read_points};
 pub use remark::{Meaning, Remark};
 pub use whole::write_bytes_whole;

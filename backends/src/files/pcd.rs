@@ -9,6 +9,9 @@ use super::table::{number, text};
 /// Longest header that is believed.
 const LONGEST_HEADER: usize = 1 << 14;
 
+/// Most numbers of one field that are believed.
+const MOST_OF_A_FIELD: usize = 4096;
+
 /// LZF takes at least three bytes for this many.
 const LARGEST_RUN: usize = 264;
 
@@ -80,81 +83,38 @@ pub(crate) fn parse(bytes: &[u8], wanted: &ColumnChoice) -> Parsed<Array> {
     Ok(Array::new(vec![header.points, kept.len()], numbers))
 }
 
-fn header(bytes: &[u8]) -> Parsed<(Header, &[u8])> {
-    let window = &bytes[..bytes.len().min(LONGEST_HEADER)];
-    let mut fields: Vec<&str> = Vec::new();
-    let (mut sizes, mut types, mut counts) = (Vec::new(), Vec::new(), None);
-    let (mut width, mut height, mut points) = (None, None, None);
-    let mut rest = window;
-    let mut line = 0;
-    while let Some(end) = rest.iter().position(|&b| b == b'\n') {
-        let row = text(&rest[..end])?.trim();
-        rest = &rest[end + 1..];
-        line += 1;
+/// What the lines before the data have said so far.
+#[derive(Default)]
+struct Told<'b> {
+    names: Vec<&'b str>,
+    sizes: Vec<usize>,
+    types: Vec<&'b str>,
+    counts: Option<Vec<usize>>,
+    width: Option<usize>,
+    height: Option<usize>,
+    points: Option<usize>,
+}
+
+impl<'b> Told<'b> {
+    /// Takes a line of the header; what the data is where the line says that.
+    fn take(&mut self, row: &'b str, line: usize) -> Parsed<Option<&'b str>> {
         let words: Vec<&str> = row.split_whitespace().collect();
-        let sizes_of = |words: &[&str]| -> Parsed<Vec<usize>> {
-            let size = |w: &&str| {
-                w.parse()
-                    .map_err(|_| Flaw::line(line, excerpt(w), "a number that there can be"))
-            };
-            words.iter().map(size).collect()
+        let size = |w: &&str| {
+            w.parse::<usize>()
+                .map_err(|_| Flaw::line(line, excerpt(w), "a number that there can be"))
         };
+        let sizes = |words: &[&str]| words.iter().map(size).collect::<Parsed<Vec<usize>>>();
         match words[..] {
             [] | ["VERSION" | "VIEWPOINT", ..] => {}
             [w, ..] if w.starts_with('#') => {}
-            ["FIELDS" | "COLUMNS", ref all @ ..] => fields = all.to_vec(),
-            ["SIZE", ref all @ ..] => sizes = sizes_of(all)?,
-            ["TYPE", ref all @ ..] => types = all.to_vec(),
-            ["COUNT", ref all @ ..] => counts = Some(sizes_of(all)?),
-            ["WIDTH", w] => width = Some(sizes_of(&[w])?[0]),
-            ["HEIGHT", h] => height = Some(sizes_of(&[h])?[0]),
-            ["POINTS", n] => points = Some(sizes_of(&[n])?[0]),
-            ["DATA", data] => {
-                let counts = counts.unwrap_or_else(|| vec![1; fields.len()]);
-                if [sizes.len(), types.len(), counts.len()] != [fields.len(); 3] {
-                    return Err(Flaw::line(
-                        line,
-                        format!(
-                            "{} fields, {} sizes, {} types",
-                            fields.len(),
-                            sizes.len(),
-                            types.len()
-                        ),
-                        "as many of each",
-                    ));
-                }
-                let area = width.zip(height).and_then(|(w, h)| w.checked_mul(h));
-                let points = points
-                    .or(area)
-                    .ok_or_else(|| Flaw::line(line, "no POINTS", "their number"))?;
-                let fields = fields.iter().zip(sizes).zip(types).zip(counts);
-                let field = |(((name, size), kind), count): (((&&str, usize), &str), usize)| {
-                    let letter = kind.to_lowercase();
-                    if !matches!(letter.as_str(), "f" | "i" | "u")
-                        || !matches!(size, 1 | 2 | 4 | 8)
-                        || count > 4096
-                    {
-                        return Err(Flaw::new(
-                            format!("{count} of type {kind} and size {size}"),
-                            "types F, I, U of 1, 2, 4 or 8 bytes",
-                        )
-                        .within(name));
-                    }
-                    Ok(Field {
-                        name: (*name).into(),
-                        kind: format!("{letter}{size}"),
-                        width: size,
-                        count,
-                    })
-                };
-                let header = Header {
-                    fields: fields.map(field).collect::<Parsed<_>>()?,
-                    points,
-                    data: data.into(),
-                    lines: line,
-                };
-                return Ok((header, &bytes[window.len() - rest.len()..]));
-            }
+            ["FIELDS" | "COLUMNS", ref all @ ..] => self.names = all.to_vec(),
+            ["SIZE", ref all @ ..] => self.sizes = sizes(all)?,
+            ["TYPE", ref all @ ..] => self.types = all.to_vec(),
+            ["COUNT", ref all @ ..] => self.counts = Some(sizes(all)?),
+            ["WIDTH", w] => self.width = Some(size(&w)?),
+            ["HEIGHT", h] => self.height = Some(size(&h)?),
+            ["POINTS", n] => self.points = Some(size(&n)?),
+            ["DATA", data] => return Ok(Some(data)),
             _ => {
                 return Err(Flaw::line(
                     line,
@@ -162,6 +122,66 @@ fn header(bytes: &[u8]) -> Parsed<(Header, &[u8])> {
                     "a header of the Point Cloud Library",
                 ));
             }
+        }
+        Ok(None)
+    }
+
+    /// The header that ends on a line.
+    fn header(self, data: &str, line: usize) -> Parsed<Header> {
+        let count = self.names.len();
+        let counts = self.counts.unwrap_or_else(|| vec![1; count]);
+        let (sizes, types) = (self.sizes, self.types);
+        if [sizes.len(), types.len(), counts.len()] != [count; 3] {
+            let found = format!(
+                "{count} fields, {} sizes, {} types",
+                sizes.len(),
+                types.len()
+            );
+            return Err(Flaw::line(line, found, "as many of each"));
+        }
+        let area = (self.width.zip(self.height)).and_then(|(w, h)| w.checked_mul(h));
+        let points =
+            (self.points.or(area)).ok_or_else(|| Flaw::line(line, "no POINTS", "their number"))?;
+        let fields = (0..count).map(|k| Field::of(self.names[k], sizes[k], types[k], counts[k]));
+        Ok(Header {
+            fields: fields.collect::<Parsed<_>>()?,
+            points,
+            data: data.into(),
+            lines: line,
+        })
+    }
+}
+
+impl Field {
+    fn of(name: &str, size: usize, kind: &str, count: usize) -> Parsed<Self> {
+        let letter = kind.to_lowercase();
+        let known = matches!(letter.as_str(), "f" | "i" | "u") && matches!(size, 1 | 2 | 4 | 8);
+        if !known || count > MOST_OF_A_FIELD {
+            let found = format!("{count} of type {kind} and size {size}");
+            return Err(Flaw::new(found, "types F, I, U of 1, 2, 4 or 8 bytes").within(name));
+        }
+        Ok(Self {
+            name: name.into(),
+            kind: format!("{letter}{size}"),
+            width: size,
+            count,
+        })
+    }
+}
+
+/// The header, and the data behind it.
+fn header(bytes: &[u8]) -> Parsed<(Header, &[u8])> {
+    let window = &bytes[..bytes.len().min(LONGEST_HEADER)];
+    let mut told = Told::default();
+    let mut rest = window;
+    let mut line = 0;
+    while let Some(end) = rest.iter().position(|&b| b == b'\n') {
+        let row = text(&rest[..end])?.trim();
+        rest = &rest[end + 1..];
+        line += 1;
+        if let Some(data) = told.take(row, line)? {
+            let header = told.header(data, line)?;
+            return Ok((header, &bytes[window.len() - rest.len()..]));
         }
     }
     Err(Flaw::new(

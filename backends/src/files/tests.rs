@@ -1,7 +1,8 @@
 //! Laws of all formats at once: round trips, refusals, and bytes that nobody meant.
 
 use super::mesh::{mesh_bytes, parse as parse_mesh};
-use super::points::{parse as parse_points, points_bytes};
+use super::point_writer::points_bytes;
+use super::points::parse as parse_points;
 use super::*;
 use crosscap_core::{Complex, CurveEdge, Mesh, PointCloud, Row};
 use proptest::prelude::*;

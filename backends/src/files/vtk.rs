@@ -12,42 +12,12 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Array> {
             "a file that starts with # vtk DataFile",
         ));
     }
-    let mut lines = 0;
-    let mut rest = bytes;
-    let mut next = || -> Option<&[u8]> {
-        let end = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
-        if rest.is_empty() {
-            return None;
-        }
-        let row = &rest[..end];
-        rest = &rest[(end + 1).min(rest.len())..];
-        lines += 1;
-        Some(row.trim_ascii())
+    let mut lines = Lines {
+        rest: bytes,
+        taken: 0,
     };
-    let (_, _) = (next(), next());
-    let big = match next() {
-        Some(b"ASCII") => false,
-        Some(b"BINARY") => true,
-        other => {
-            let found = String::from_utf8_lossy(other.unwrap_or_default()).into_owned();
-            return Err(Flaw::line(3, excerpt(&found), "ASCII or BINARY"));
-        }
-    };
-    let mut set = String::new();
-    let head = loop {
-        let Some(row) = next() else {
-            return Err(Flaw::new(
-                format!("no POINTS in a data set of type {}", excerpt(&set)),
-                "a data set that lists its points",
-            ));
-        };
-        if let Some(kind) = row.strip_prefix(b"DATASET") {
-            set = String::from_utf8_lossy(kind).trim().into();
-        }
-        if row.starts_with(b"POINTS") {
-            break text(row)?;
-        }
-    };
+    let big = lines.is_binary()?;
+    let head = lines.points()?;
     let words: Vec<&str> = head.split_whitespace().collect();
     let count = match words[..] {
         ["POINTS", n, _] => n.parse::<usize>().ok().and_then(|n| n.checked_mul(3)),
@@ -55,24 +25,14 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Array> {
     };
     let Some(count) = count else {
         return Err(Flaw::line(
-            lines,
+            lines.taken,
             excerpt(head),
             "POINTS, their number, a type",
         ));
     };
-    let kind = match words[2] {
-        "float" => "f4",
-        "double" => "f8",
-        "char" => "i1",
-        "unsigned_char" => "u1",
-        "short" => "i2",
-        "unsigned_short" => "u2",
-        "int" => "i4",
-        "unsigned_int" => "u4",
-        "long" | "vtktypeint64" => "i8",
-        "unsigned_long" => "u8",
-        other => return Err(Flaw::line(lines, excerpt(other), "a type of number")),
-    };
+    let kind = stored(words[2])
+        .ok_or_else(|| Flaw::line(lines.taken, excerpt(words[2]), "a type of number"))?;
+    let Lines { rest, taken } = lines;
     let numbers = if big {
         let width = usize::from(kind.as_bytes()[1] - b'0');
         let data = count.checked_mul(width).and_then(|size| rest.get(..size));
@@ -85,9 +45,75 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Array> {
         })?;
         npy::decode(kind, true, data)?
     } else {
-        ascii(rest, count, lines, kind == "f4")?
+        ascii(rest, count, taken, kind == "f4")?
     };
     Ok(Array::new(vec![count / 3, 3], numbers))
+}
+
+/// The lines before the data.
+struct Lines<'b> {
+    rest: &'b [u8],
+    taken: usize,
+}
+
+impl<'b> Lines<'b> {
+    fn next(&mut self) -> Option<&'b [u8]> {
+        let Self { rest, .. } = *self;
+        if rest.is_empty() {
+            return None;
+        }
+        let end = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
+        self.rest = &rest[(end + 1).min(rest.len())..];
+        self.taken += 1;
+        Some(rest[..end].trim_ascii())
+    }
+
+    /// Whether the data is binary, which the third line says.
+    fn is_binary(&mut self) -> Parsed<bool> {
+        let (_, _) = (self.next(), self.next());
+        match self.next() {
+            Some(b"ASCII") => Ok(false),
+            Some(b"BINARY") => Ok(true),
+            other => {
+                let found = String::from_utf8_lossy(other.unwrap_or_default()).into_owned();
+                Err(Flaw::line(3, excerpt(&found), "ASCII or BINARY"))
+            }
+        }
+    }
+
+    /// The line that begins the points.
+    fn points(&mut self) -> Parsed<&'b str> {
+        let mut set = String::new();
+        while let Some(row) = self.next() {
+            if let Some(kind) = row.strip_prefix(b"DATASET") {
+                set = String::from_utf8_lossy(kind).trim().into();
+            }
+            if row.starts_with(b"POINTS") {
+                return text(row);
+            }
+        }
+        Err(Flaw::new(
+            format!("no POINTS in a data set of type {}", excerpt(&set)),
+            "a data set that lists its points",
+        ))
+    }
+}
+
+/// A type of number as NumPy calls it.
+fn stored(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "float" => "f4",
+        "double" => "f8",
+        "char" => "i1",
+        "unsigned_char" => "u1",
+        "short" => "i2",
+        "unsigned_short" => "u2",
+        "int" => "i4",
+        "unsigned_int" => "u4",
+        "long" | "vtktypeint64" => "i8",
+        "unsigned_long" => "u8",
+        _ => return None,
+    })
 }
 
 fn ascii(rest: &[u8], count: usize, before: usize, single: bool) -> Parsed<Numbers> {

@@ -7,7 +7,7 @@
 use super::error::{Flaw, Parsed};
 use super::mesh_parts::{Parts, RawCurve};
 use super::mesh_sheet::Sheet;
-use super::vtk_xml::{File, Source};
+use super::vtk_xml::{File, Piece, Source};
 use base64::Engine;
 use crosscap_algorithms::homology::homology;
 use serde_json::Value;
@@ -194,26 +194,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
             "one",
         ));
     };
-    let points = piece.points()?.into_f64();
-    let (dimension, coordinates) = match piece.array("PointData", Some("coordinates"))? {
-        Some((dimension, numbers)) => {
-            let numbers = numbers.into_f64();
-            if dimension == 0 || dimension.checked_mul(points.len() / 3) != Some(numbers.len()) {
-                return Err(Flaw::new(
-                    format!("{} numbers", numbers.len()),
-                    format!("{dimension} for each of {} points", points.len() / 3),
-                )
-                .within("coordinates"));
-            }
-            (dimension, numbers)
-        }
-        None => (3, points),
-    };
-    let needed = |name: &str| {
-        piece
-            .integers("Cells", name)?
-            .ok_or_else(|| Flaw::new("no such array", "one in Cells").within(name))
-    };
+    let (dimension, coordinates) = coordinates(piece)?;
     let mut parts = Parts {
         metadata: metadata(&file)?,
         dimension,
@@ -221,64 +202,106 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Parts> {
         point_index: piece.integers("PointData", "point_index")?,
         ..Parts::default()
     };
-    let (connectivity, offsets, types) = (
-        needed("connectivity")?,
-        needed("offsets")?,
-        needed("types")?,
-    );
-    let (cells, labels) = (
-        piece.integers("CellData", "cells")?,
-        piece.integers("CellData", "piece")?,
-    );
-    for (name, found) in [
-        ("types", Some(types.len())),
-        ("cells", cells.as_ref().map(Vec::len)),
-        ("piece", labels.as_ref().map(Vec::len)),
-    ] {
-        if let Some(found) = found.filter(|&n| n != offsets.len()) {
-            return Err(Flaw::new(
-                format!("{found} entries"),
-                format!("{}, one a cell", offsets.len()),
-            )
-            .within(name));
-        }
-    }
-    let mut curves: Vec<RawCurve> = Vec::new();
-    let mut pieces = Vec::new();
-    let mut from = 0;
-    for (at, (&to, &kind)) in offsets.iter().zip(&types).enumerate() {
-        let corners = usize::try_from(to)
-            .ok()
-            .and_then(|to| connectivity.get(from..to))
-            .ok_or_else(|| {
-                Flaw::row(
-                    "offsets",
-                    at,
-                    None,
-                    to.to_string(),
-                    format!("a number from {from} to {}", connectivity.len()),
-                )
-            })?;
-        from += corners.len();
-        match (kind, corners) {
-            (LINE, &[a, b]) => curves.push(([a, b], cells.as_ref().map(|c| c[at]))),
-            (TRIANGLE, &[a, b, c]) => {
-                parts.triangles.push([a, b, c]);
-                pieces.extend(labels.as_ref().map(|l| l[at]));
-            }
-            _ => {
-                return Err(Flaw::row(
-                    "cells",
-                    at,
-                    None,
-                    format!("a cell of type {kind} with {} corners", corners.len()),
-                    "lines (type 3) of 2 and triangles (type 5) of 3",
-                ));
-            }
-        }
-    }
-    // Without lines and without the array that we write, the file says nothing about curves.
-    parts.curves = (cells.is_some() || !curves.is_empty()).then_some(curves);
-    parts.pieces = labels.is_some().then_some(pieces);
+    Cells::of(piece)?.sort_into(&mut parts)?;
     Ok(parts)
+}
+
+/// The coordinates in the space of the points, and how many each has: the places where there are no others.
+fn coordinates(piece: &Piece<'_, '_>) -> Parsed<(usize, Vec<f64>)> {
+    let points = piece.points()?.into_f64();
+    let Some((dimension, numbers)) = piece.array("PointData", Some("coordinates"))? else {
+        return Ok((3, points));
+    };
+    let (numbers, count) = (numbers.into_f64(), points.len() / 3);
+    if dimension == 0 || dimension.checked_mul(count) != Some(numbers.len()) {
+        return Err(Flaw::new(
+            format!("{} numbers", numbers.len()),
+            format!("{dimension} for each of {count} points"),
+        )
+        .within("coordinates"));
+    }
+    Ok((dimension, numbers))
+}
+
+/// Lines and triangles as they stand in the file.
+struct Cells {
+    connectivity: Vec<i64>,
+    offsets: Vec<i64>,
+    types: Vec<i64>,
+    /// How many cells of the mesh meet at each line.
+    met: Option<Vec<i64>>,
+    /// The piece of each triangle.
+    pieces: Option<Vec<i64>>,
+}
+
+impl Cells {
+    fn of(piece: &Piece<'_, '_>) -> Parsed<Self> {
+        let needed = |name: &str| {
+            piece
+                .integers("Cells", name)?
+                .ok_or_else(|| Flaw::new("no such array", "one in Cells").within(name))
+        };
+        let cells = Self {
+            connectivity: needed("connectivity")?,
+            offsets: needed("offsets")?,
+            types: needed("types")?,
+            met: piece.integers("CellData", "cells")?,
+            pieces: piece.integers("CellData", "piece")?,
+        };
+        for (name, found) in [
+            ("types", Some(cells.types.len())),
+            ("cells", cells.met.as_ref().map(Vec::len)),
+            ("piece", cells.pieces.as_ref().map(Vec::len)),
+        ] {
+            if let Some(found) = found.filter(|&n| n != cells.offsets.len()) {
+                return Err(Flaw::new(
+                    format!("{found} entries"),
+                    format!("{}, one a cell", cells.offsets.len()),
+                )
+                .within(name));
+            }
+        }
+        Ok(cells)
+    }
+
+    /// The corners of cell `at`, which begin at `from`.
+    fn corners(&self, at: usize, from: usize) -> Parsed<&[i64]> {
+        let to = self.offsets[at];
+        let found = usize::try_from(to).ok();
+        let corners = found.and_then(|to| self.connectivity.get(from..to));
+        corners.ok_or_else(|| {
+            let expected = format!("a number from {from} to {}", self.connectivity.len());
+            Flaw::row("offsets", at, None, to.to_string(), expected)
+        })
+    }
+
+    fn sort_into(self, parts: &mut Parts) -> Parsed<()> {
+        let mut curves: Vec<RawCurve> = Vec::new();
+        let mut pieces = Vec::new();
+        let mut from = 0;
+        for (at, &kind) in self.types.iter().enumerate() {
+            let corners = self.corners(at, from)?;
+            from += corners.len();
+            match (kind, corners) {
+                (LINE, &[a, b]) => curves.push(([a, b], self.met.as_ref().map(|c| c[at]))),
+                (TRIANGLE, &[a, b, c]) => {
+                    parts.triangles.push([a, b, c]);
+                    pieces.extend(self.pieces.as_ref().map(|l| l[at]));
+                }
+                _ => {
+                    return Err(Flaw::row(
+                        "cells",
+                        at,
+                        None,
+                        format!("a cell of type {kind} with {} corners", corners.len()),
+                        "lines (type 3) of 2 and triangles (type 5) of 3",
+                    ));
+                }
+            }
+        }
+        // Without lines and without the array that we write, the file says nothing about curves.
+        parts.curves = (self.met.is_some() || !curves.is_empty()).then_some(curves);
+        parts.pieces = self.pieces.is_some().then_some(pieces);
+        Ok(())
+    }
 }

@@ -35,49 +35,14 @@ pub(super) fn corner_normals(
     if !smooth {
         return normals;
     }
-    let mut starts = vec![0usize; places.len() + 1];
-    for t in triangles {
-        for &v in t {
-            starts[v as usize + 1] += 1;
-        }
-    }
-    for i in 1..starts.len() {
-        starts[i] += starts[i - 1];
-    }
-    let mut fill = starts.clone();
-    let mut around = vec![(0usize, 0usize); triangles.len() * 3];
-    for (t, corners) in triangles.iter().enumerate() {
-        for (k, &v) in corners.iter().enumerate() {
-            around[fill[v as usize]] = (t, k);
-            fill[v as usize] += 1;
-        }
-    }
+    let (starts, around) = fans(places.len(), triangles);
     let mut group = Vec::new();
     for v in 0..places.len() {
         let fan = &around[starts[v]..starts[v + 1]];
         if fan.len() > WIDEST_FAN {
             continue;
         }
-        group.clear();
-        group.extend(0..fan.len());
-        for i in 0..fan.len() {
-            for j in 0..i {
-                let linked = triangles[fan[i].0].iter().any(|w| {
-                    let w = *w;
-                    let v = v as u32;
-                    w != v
-                        && triangles[fan[j].0].contains(&w)
-                        && curve_edges.binary_search(&[v.min(w), v.max(w)]).is_err()
-                });
-                if linked && group[i] != group[j] {
-                    let (from, to) = (group[i].max(group[j]), group[i].min(group[j]));
-                    group
-                        .iter_mut()
-                        .filter(|g| **g == from)
-                        .for_each(|g| *g = to);
-                }
-            }
-        }
+        join(fan, v as u32, triangles, curve_edges, &mut group);
         for (i, &(t, k)) in fan.iter().enumerate() {
             let mut sum = Vector3::zeros();
             for (j, &(s, _)) in fan.iter().enumerate() {
@@ -92,6 +57,59 @@ pub(super) fn corner_normals(
         }
     }
     normals
+}
+
+/// A triangle, and which of its corners.
+type Corner = (usize, usize);
+
+/// The corners at every vertex, one vertex after the other, and where those of each begin.
+fn fans(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<usize>, Vec<Corner>) {
+    let mut starts = vec![0usize; vertices + 1];
+    for t in triangles {
+        for &v in t {
+            starts[v as usize + 1] += 1;
+        }
+    }
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
+    }
+    let mut fill = starts.clone();
+    let mut around = vec![(0, 0); triangles.len() * 3];
+    for (t, corners) in triangles.iter().enumerate() {
+        for (k, &v) in corners.iter().enumerate() {
+            around[fill[v as usize]] = (t, k);
+            fill[v as usize] += 1;
+        }
+    }
+    (starts, around)
+}
+
+/// Which triangles about a vertex hang together across edges that are on no curve: those of one group have one number.
+fn join(
+    fan: &[Corner],
+    v: u32,
+    triangles: &[[u32; 3]],
+    curve_edges: &[[u32; 2]],
+    group: &mut Vec<usize>,
+) {
+    group.clear();
+    group.extend(0..fan.len());
+    for i in 0..fan.len() {
+        for j in 0..i {
+            let linked = triangles[fan[i].0].iter().any(|&w| {
+                w != v
+                    && triangles[fan[j].0].contains(&w)
+                    && curve_edges.binary_search(&[v.min(w), v.max(w)]).is_err()
+            });
+            if linked && group[i] != group[j] {
+                let (from, to) = (group[i].max(group[j]), group[i].min(group[j]));
+                group
+                    .iter_mut()
+                    .filter(|g| **g == from)
+                    .for_each(|g| *g = to);
+            }
+        }
+    }
 }
 
 /// The color of a surface in light from the upper left and a weaker one from the right, the
