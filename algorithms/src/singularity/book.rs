@@ -75,13 +75,11 @@ impl Book {
         }
         let (tuning, radius) = (&self.tuning, local.radius);
         let book = PageSheets::read(&all, local.fitted, radius, &tuning.pages, |pages| {
-            let aside = pages.place - pages.along * pages.along.dot(&pages.place);
-            let known = match (pages.out.len(), pages.pairs().len()) {
-                (3, sheets) => sheets == 0,
-                (4, sheets) => sheets == 2,
-                _ => false,
-            };
-            !known && aside.norm() <= tuning.off_center * radius
+            match (pages.out.len(), pages.pairs().len()) {
+                (3, sheets) => sheets > 0,
+                (4, sheets) => sheets != 2,
+                _ => true,
+            }
         })?;
         let residual = book.residual(points, &self.tolerance, tuning.astray)?;
         book.are_held(points, tuning.share)?;

@@ -1,6 +1,6 @@
 //! A curve that ends where the sheets that meet in it do.
 
-use super::curve_end::{self, CurveEnd};
+use super::curve_end::CurveEnd;
 use super::page_sheets::PageSheets;
 use super::patch::PATCH_POINTS;
 use super::rim::{EndingSheet, Rim};
@@ -77,8 +77,7 @@ impl BookEnd {
         let (points, radius, ep) = (&all[..local.fitted], local.radius, self.tolerance.ep);
         let (center, tuning) = (all[local.center], &self.tuning);
         let residual = book.residual(points, &self.tolerance, tuning.end.astray)?;
-        curve_end::gains(residual, points, radius, &tuning.end)?;
-        book.are_held(points, tuning.share)?;
+        book.are_held(points, 0.0)?;
         let meet = |x| {
             book.meet(x, tuning.step * radius)
                 .ok_or(Rejection::NoRealSolution)
@@ -95,8 +94,7 @@ impl BookEnd {
         let most = (tuning.apart * spacing).max(tuning.apart_ep * ep);
         let (middle, rims) = ending(&book, points, [near, way], [radius, most], tuning)?;
         let end = meet(farthest_on(&book, points, way, middle, ep, &rims))?;
-        let beyond = (end - center).norm() > tuning.end.reach * radius;
-        if beyond || book.sine(&end) < tuning.sine {
+        if (end - center).norm() > tuning.end.reach * radius {
             return Err(Rejection::NoRealSolution);
         }
         let names = Names::of(&book, &rims);

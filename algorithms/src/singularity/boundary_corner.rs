@@ -80,7 +80,7 @@ impl BoundaryCorner {
     fn believe(&self, wedge: &Wedge, found: &Evidence) -> Result<(), Rejection> {
         let tuning = &self.tuning;
         let [t, v] = wedge.kink.corner();
-        if found.turn.abs() < tuning.turn || t.hypot(v) > tuning.reach {
+        if t.hypot(v) > tuning.reach {
             return Err(Rejection::NoRealSolution);
         }
         if found.turn < 0.0 && found.below_arm > tuning.arm {

@@ -1,7 +1,6 @@
 //! A point at which a surface is like the tip of a cone.
 
 use super::one_fit::{OneFit, located};
-use super::patch::off_one_sheet;
 use super::quadric_cone::QuadricCone;
 use super::tolerance::{Tolerance, at_least, vectors};
 use crate::tuning::ConePointTuning;
@@ -69,10 +68,6 @@ impl ConePoint {
                 limit: tolerance.ep,
             });
         }
-        let simpler = off_one_sheet(points, radius);
-        if residual > tuning.gain * simpler {
-            return Err(Rejection::SimplerModelFits { residual, simpler });
-        }
         let mut fit = Fit {
             all,
             cone,
@@ -80,18 +75,7 @@ impl ConePoint {
             ep: tolerance.ep,
             halves: [true; 2],
         };
-        let counts = CELLS.map(|cell| (0..local.fitted).filter(|&k| fit.label(k) == cell).count());
-        fit.halves = counts.map(|count| count > 0);
-        let least = tuning.half_share * local.fitted as f64;
-        for (k, &count) in counts.iter().enumerate() {
-            // A few points on one side are neither a half of a cone nor none.
-            if fit.halves[k] && (count as f64) < least {
-                return Err(Rejection::EmptyStratum {
-                    stratum: k + 1,
-                    found: count,
-                });
-            }
-        }
+        fit.halves = CELLS.map(|cell| (0..local.fitted).any(|k| fit.label(k) == cell));
         match fit.halves {
             [false, false] => Err(Rejection::NoRealSolution),
             _ => Ok(fit),

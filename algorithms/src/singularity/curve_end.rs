@@ -1,23 +1,7 @@
 //! What models of the ends of curves have in common: when they are believed, and what they say of rows. Books are believed so, too.
 
-use super::patch::off_one_sheet;
-use crate::tuning::CurveEndTuning;
 use crosscap_core::{Decomposition, Label, LocalPoints, Located, Rejection, Stratum};
 use nalgebra::Vector3;
-
-/// Refuses a fit that is not much better than one quadratic patch.
-pub(super) fn gains(
-    residual: f64,
-    points: &[Vector3<f64>],
-    radius: f64,
-    tuning: &CurveEndTuning,
-) -> Result<(), Rejection> {
-    let simpler = off_one_sheet(points, radius);
-    match residual > tuning.gain * simpler {
-        true => Err(Rejection::SimplerModelFits { residual, simpler }),
-        false => Ok(()),
-    }
-}
 
 /// Refuses a fit that too many of the points are farther off than ep; `off` are their distances.
 pub(super) fn follows(

@@ -198,15 +198,7 @@ impl PageSheets {
             .meet(&which[..count], 2, from, reach, self.pages.tuning.sine)
     }
 
-    /// Greatest sine of the angle of two sheets at a place.
-    pub(super) fn sine(&self, place: &Vector3<f64>) -> f64 {
-        let normal = |k: usize| self.sheets.patches[k].height(place).1.normalize();
-        let pairs = (0..self.of.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
-        let sines = pairs.map(|(a, b)| normal(a).cross(&normal(b)).norm());
-        sines.fold(0.0, f64::max)
-    }
-
-    /// Refuses pages of which one holds less than the share `least` of the points.
+    /// Refuses pages of which one holds less than the share `least` of the points, or fewer than three.
     pub(super) fn are_held(&self, points: &[Vector3<f64>], least: f64) -> Result<(), Rejection> {
         let mut held = [0usize; MOST_PAGES];
         for (row, x) in points.iter().enumerate() {

@@ -44,21 +44,15 @@ impl Pages {
         if elements.len() < LEAST_NORMALS {
             return None;
         }
-        let mut line = axis(&elements, tuning.along_at_first, tuning.across)?;
-        for round in 1..ROUNDS {
+        let mut line = axis(&elements, tuning.across)?;
+        for _ in 1..ROUNDS {
             let (place, axes) = line;
             for e in &mut elements {
                 let aside = e.normal.dot(&(e.place - place)) / (tuning.aside * radius);
                 let tilt = e.normal.dot(&axes[0]) / tuning.tilt;
                 e.weight = 1.0 / ((1.0 + aside * aside) * (1.0 + tilt * tilt));
             }
-            let last = round + 1 == ROUNDS;
-            let most = if last {
-                tuning.along
-            } else {
-                tuning.along_at_first
-            };
-            line = axis(&elements, most, tuning.across)?;
+            line = axis(&elements, tuning.across)?;
         }
         let (place, [along, first, second]) = line;
         let out = directions(points, &place, [first, second], radius, tuning)?;
@@ -139,9 +133,9 @@ fn ordered(matrix: Matrix3<f64>) -> ([f64; 3], [Vector3<f64>; 3]) {
     )
 }
 
-/// The place and the axes of the line that the planes of all pieces have in common: its direction comes first. `most`
-/// is the greatest mean square of the part of the normals along it, `across` the least in the second direction.
-fn axis(elements: &[Element], most: f64, across: f64) -> Option<(Vector3<f64>, [Vector3<f64>; 3])> {
+/// The place and the axes of the line that the planes of all pieces have in common: its direction comes first. `across` is the least
+/// mean square of the normals in the second direction.
+fn axis(elements: &[Element], across: f64) -> Option<(Vector3<f64>, [Vector3<f64>; 3])> {
     let mut spread = Matrix3::zeros();
     let mut total = 0.0;
     for e in elements {
@@ -149,7 +143,7 @@ fn axis(elements: &[Element], most: f64, across: f64) -> Option<(Vector3<f64>, [
         total += e.weight;
     }
     let (values, axes) = ordered(spread / total);
-    if values[0] > most || values[1] < across {
+    if values[1] < across {
         return None;
     }
     let mut normal = Matrix3::zeros();

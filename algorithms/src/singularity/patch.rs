@@ -153,15 +153,6 @@ impl QuadraticPatch {
     }
 }
 
-/// Root of the mean squared distance of points to one quadratic patch about the origin, over the first two axes.
-pub(super) fn off_one_sheet(points: &[Vector3<f64>], radius: f64) -> f64 {
-    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-    let mut sheet = QuadraticPatch::plane(Vector3::zeros(), axes);
-    sheet.fit(points.iter().copied(), radius);
-    let off = points.iter().map(|x| sheet.signed_distance(x).powi(2));
-    (off.sum::<f64>() / points.len() as f64).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -116,17 +116,15 @@ impl PinchMap {
         libm::atan2(across, along)
     }
 
-    /// The length l of z^2 = x^2 y / l; `None` where the leading coefficients are dependent: at angles of a smaller sine
-    /// than the `least`.
-    pub(super) fn natural_length(&self, least: f64) -> Option<f64> {
+    /// The length l of z^2 = x^2 y / l; `None` where the leading coefficients are dependent.
+    pub(super) fn natural_length(&self) -> Option<f64> {
         let [_, a, b, c, ..] = self.coefficients;
         let (x, y) = (a.normalize(), b.normalize());
         let normal = x.cross(&y);
         let sine = normal.norm();
         let out = normal.dot(&c) / sine;
-        (sine > least && out.abs() > least * c.norm())
-            .then(|| a.norm_squared() * b.norm() / (out * out))
-            .filter(|length| length.is_finite())
+        let length = a.norm_squared() * b.norm() / (out * out);
+        (sine > 0.0 && length.is_finite()).then_some(length)
     }
 
     /// Parameters of the nearest place.
@@ -343,7 +341,7 @@ mod tests {
             assert!(square.sqrt() < 1e-3, "{length}: {square:e}");
             let off = (map.point() - Vector3::new(0.1, 0.2, -0.3)).norm();
             assert!(off < 0.01, "{length}: {off}");
-            let found = map.natural_length(0.2).unwrap();
+            let found = map.natural_length().unwrap();
             assert!((found / length - 1.0).abs() < 0.1, "{length}: {found}");
             for x in &points {
                 let place = map.at(map.foot(x));

@@ -68,7 +68,6 @@ impl PinchPoint {
         let (map, square) = PinchMap::fit(points, local.radius).ok_or(Rejection::NoRealSolution)?;
         let sum = square * points.len() as f64;
         let residual = self.tolerance.residual(sum, points.len())?;
-        curve_end::gains(residual, points, local.radius, &self.tuning.end)?;
         let shift = (map.point() - all[local.center]).norm();
         if shift > self.tuning.end.reach * local.radius {
             return Err(Rejection::NoRealSolution);
@@ -110,23 +109,15 @@ impl Fit {
                 held[((turn + 1.0) * SECTORS as f64) as usize % SECTORS] += 1;
             }
         }
-        let total: usize = held.iter().sum();
-        let least = self.tuning.sector_share * total as f64 / SECTORS as f64;
-        match held.iter().position(|&h| h as f64 <= least) {
-            Some(stratum) => Err(Rejection::EmptyStratum {
-                stratum,
-                found: held[stratum],
-            }),
+        match held.iter().position(|&h| h == 0) {
+            Some(stratum) => Err(Rejection::EmptyStratum { stratum, found: 0 }),
             None => Ok(()),
         }
     }
 
-    /// Refuses a ball in which the map is bent beyond its order, and one that shows too little of the fold. The
-    /// point is `shift` off the center.
+    /// Refuses a ball that shows too little of the fold. The point is `shift` off the center.
     fn has_room(&self, radius: f64, shift: f64) -> Result<(), Rejection> {
-        let length = (self.map.natural_length(self.tuning.sine))
-            .filter(|&length| length >= self.tuning.length * radius)
-            .ok_or(Rejection::NoRealSolution)?;
+        let length = self.map.natural_length().ok_or(Rejection::NoRealSolution)?;
         let wide = self.tuning.fold_length * (self.ep * length).sqrt();
         let needed = wide.max(self.tuning.fold * self.ep);
         if radius - shift < needed {

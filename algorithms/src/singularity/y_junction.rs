@@ -12,6 +12,9 @@ use crosscap_core::{
 };
 use nalgebra::{Matrix3, Vector3};
 
+/// Fewest points of a cell.
+const LEAST_HELD: usize = 3;
+
 /// Three half sheets of space on a common curve, at any angles: a Y-junction.
 ///
 /// Half planes on a line lie in three planes through it, and these are those of the cubic that
@@ -159,8 +162,7 @@ impl YJunction {
             }
         }
         let residual = self.tolerance.residual(sum, count)?;
-        let least = (tuning.cell_share * (count - held[0]) as f64).max(3.0);
-        if let Some(stratum) = (1..4).find(|&c| (held[c] as f64) < least) {
+        if let Some(stratum) = (1..4).find(|&c| held[c] < LEAST_HELD) {
             return Err(Rejection::EmptyStratum {
                 stratum,
                 found: held[stratum],

@@ -8,8 +8,6 @@ use serde::Serialize;
 pub struct CurveEndTuning {
     /// Greatest share of the points farther than ep from the surface.
     pub astray: f64,
-    /// Greatest share of the residual of one quadratic patch that the fit may leave.
-    pub gain: f64,
     /// The end lies within this share of the radius.
     pub reach: f64,
     /// A point off the curves tells where they are up to this many ep.
@@ -20,7 +18,6 @@ impl CurveEndTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         astray: 0.03,
-        gain: 0.5,
         reach: 0.7,
         witness: 3.0,
     };
@@ -32,28 +29,19 @@ impl CurveEndTuning {
 pub struct PinchPointTuning {
     /// What it has in common with other ends.
     pub end: CurveEndTuning,
-    /// Least share of the points of an even spread that each of the eight sectors about the point holds.
-    pub sector_share: f64,
     /// How far the fold must be followed, in square roots of ep times the natural length of the map: there the
     /// sheet opens wide enough for charts of some four ep to be laid flat across it.
     pub fold_length: f64,
     /// How far at least, in ep: as far as a chart of three dl reaches, at some four ep each.
     pub fold: f64,
-    /// Least natural length of the map in radii: a map of a shorter one is bent beyond its third order.
-    pub length: f64,
-    /// Least sine of the angles between the three leading coefficients of the map.
-    pub sine: f64,
 }
 
 impl PinchPointTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         end: CurveEndTuning::MEASURED,
-        sector_share: 0.25,
         fold_length: 2.5,
         fold: 14.0,
-        length: 0.7,
-        sine: 0.2,
     };
 }
 
@@ -85,8 +73,6 @@ pub struct BookTuning {
     pub astray: f64,
     /// How its pages are read.
     pub pages: PagesTuning,
-    /// Farthest that the curve is from the middle of the points, in radii: farther out pages are missing in the ball.
-    pub off_center: f64,
     /// Least share of the points that a page holds.
     pub share: f64,
     /// Farthest that a point is moved, in radii.
@@ -102,7 +88,6 @@ impl BookTuning {
     pub const MEASURED: Self = Self {
         astray: CurveEndTuning::MEASURED.astray,
         pages: PagesTuning::MEASURED,
-        off_center: 0.35,
         share: 0.04,
         step: 0.6,
         witness: 3.0,
@@ -119,10 +104,6 @@ pub struct BookEndTuning {
     pub pages: PagesTuning,
     /// Boundaries of the sheets.
     pub rim: RimTuning,
-    /// Least share of the points that each page holds.
-    pub share: f64,
-    /// Least sine of the angle of two sheets where they end, 20 degrees: at a pinch point it goes to zero.
-    pub sine: f64,
     /// Least cosine of the angle of the curve and the way out of a sheet.
     pub crossing: f64,
     /// The curve meets the boundaries at most so many spacings of the points of a page apart: each runs inside the true
@@ -140,8 +121,6 @@ impl BookEndTuning {
         end: CurveEndTuning::MEASURED,
         pages: PagesTuning::MEASURED,
         rim: RimTuning::MEASURED,
-        share: 0.03,
-        sine: 0.34,
         crossing: 0.5,
         apart: 2.0,
         apart_ep: 3.0,
@@ -154,8 +133,6 @@ impl BookEndTuning {
 pub struct BoundaryCornerTuning {
     /// Farthest that the corner is from the center.
     pub reach: f64,
-    /// Least turn of the boundary at the corner, in radians: what turns less may be an ellipse.
-    pub turn: f64,
     /// Greatest bend of the arms, half of their second derivative.
     pub arm_bend: f64,
     /// Greatest coefficients of the square, the cube and the fourth power in a smooth boundary over its tangent. The first is half of its
@@ -178,7 +155,6 @@ impl BoundaryCornerTuning {
     /// What the program runs with.
     pub const MEASURED: Self = Self {
         reach: 0.7,
-        turn: 0.7,
         arm_bend: 0.35,
         smooth: [1.25, 0.5, 0.3],
         missing: 8.0,

@@ -101,8 +101,6 @@ pub struct YJunctionTuning {
     pub sine: f64,
     /// Greatest share of the points of a plane on the half that is not there.
     pub beyond: f64,
-    /// Least share of the points in each cell.
-    pub cell_share: f64,
     /// Farthest that a center is moved, as a share of the radius.
     pub step: f64,
     /// Each cell has a point this close to the junction, as a share of the radius.
@@ -120,7 +118,6 @@ impl YJunctionTuning {
         along: 0.05,
         sine: 0.2,
         beyond: 0.2,
-        cell_share: 0.04,
         step: 0.6,
         support: 0.6,
         witness: 3.0,
@@ -223,17 +220,10 @@ pub struct CurveAndSheetTuning {
     pub plane: f64,
     /// Farthest that the point may be, as a share of the radius.
     pub reach: f64,
-    /// Least sine of the angle between curve and sheet.
-    pub sine: f64,
     /// The sheet is fitted to points farther than this many ep from the curve.
     pub clear: f64,
-    /// Greatest gradient of the height above the sheet, 1 where it is parallel to its plane: a steeper patch
-    /// has bent to points that are on no sheet, and distances from it mean nothing.
-    pub steepest: f64,
     /// Fewest points of an arc.
     pub arc: usize,
-    /// A curve is at least this many ep long.
-    pub length: f64,
 }
 
 impl CurveAndSheetTuning {
@@ -241,11 +231,8 @@ impl CurveAndSheetTuning {
     pub const MEASURED: Self = Self {
         plane: 0.1,
         reach: 0.95,
-        sine: 0.3,
         clear: 1.5,
-        steepest: 2.0,
         arc: 2,
-        length: 3.0,
     };
 }
 
@@ -261,10 +248,6 @@ pub struct ConePointTuning {
     pub neck: f64,
     /// Greatest share of the points farther than ep from the cone.
     pub astray: f64,
-    /// Greatest share of the residual of one quadratic patch that the fit may leave.
-    pub gain: f64,
-    /// Least share of the points on a half of the cone that is there.
-    pub half_share: f64,
 }
 
 impl ConePointTuning {
@@ -274,7 +257,5 @@ impl ConePointTuning {
         reach: 0.7,
         neck: 0.6,
         astray: 0.03,
-        gain: 0.5,
-        half_share: 0.04,
     };
 }

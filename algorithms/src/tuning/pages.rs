@@ -12,11 +12,6 @@ pub struct PagesTuning {
     pub aside: f64,
     /// Part of the normal of a piece along the curve from which the piece counts less.
     pub tilt: f64,
-    /// Greatest mean square of the part of the normals along the curve.
-    pub along: f64,
-    /// The same while all normals weigh the same: next to the curve the nearest points of a grid lie across it, and so do
-    /// their normals. Of three sheets that cross in a point a third does.
-    pub along_at_first: f64,
     /// Least mean square of the normals in the second direction: with less the pages are one sheet.
     pub across: f64,
     /// Points nearer to the curve than this share of the radius do not tell their page.
@@ -41,8 +36,6 @@ impl PagesTuning {
         flat: 0.05,
         aside: 0.05,
         tilt: 0.15,
-        along: 0.06,
-        along_at_first: 0.32,
         across: 0.04,
         near: 0.3,
         gap: 0.2,

@@ -119,10 +119,6 @@ fn sheet_and_curve(
                 found: near.len(),
             });
         }
-        let steepest = |x: &Vector3<f64>| sheet.height(x).1.norm() > tuning.steepest;
-        if near.iter().any(steepest) {
-            return Err(Rejection::NoRealSolution);
-        }
         if round == 0 {
             continue;
         }
@@ -148,11 +144,7 @@ fn meeting(
     for _ in 0..12 {
         let x = curve.at(t);
         let (value, gradient) = sheet.height(&x);
-        let slope = gradient.dot(&curve.tangent(t));
-        if slope.abs() < tuning.sine * gradient.norm() {
-            return None;
-        }
-        t -= value / slope;
+        t -= value / gradient.dot(&curve.tangent(t));
         height = value.abs();
         if !t.is_finite() || t.abs() > 4.0 * radius {
             return None;
@@ -196,12 +188,6 @@ impl Fit {
         }
         let apex = meeting(&sheet, &curve, &center, tuning, local.radius)
             .ok_or(Rejection::NoRealSolution)?;
-        let lengths = beside.iter().map(|x| curve.parameter(x));
-        let span = lengths.clone().fold(f64::NEG_INFINITY, f64::max)
-            - lengths.fold(f64::INFINITY, f64::min);
-        if span < tuning.length * ep {
-            return Err(Rejection::NoRealSolution);
-        }
         let mut fit = Self {
             curve,
             apex,
