@@ -58,7 +58,10 @@ impl Book {
             } else {
                 (1, a, b)
             };
-            held[2 * own + usize::from(other >= 0.0)] += 1;
+            // About the line a sheet that bends is on either side of its plane.
+            if other.abs() > self.tolerance.ep {
+                held[2 * own + usize::from(other >= 0.0)] += 1;
+            }
             sum += off * off;
         }
         let count = points.len() as f64;
@@ -244,6 +247,29 @@ mod tests {
             }
             assert!(seen.iter().all(Option::is_some));
         }
+    }
+
+    /// A sheet that bends towards the side on which another one stands is on both sides of its own mean plane about the
+    /// curve: no crossing for that.
+    #[test]
+    fn a_sheet_that_stands_on_a_bent_one_is_no_crossing() {
+        // On the inside of a cylinder, of 4.6 radii of the ball, about the third axis.
+        let bend = 4.6;
+        let steps = || (0..9).map(|k| f64::from(k) / 9.0);
+        let bent = steps().flat_map(|z| {
+            (-9..=9).map(move |k| {
+                let (s, c) = libm::sincos(f64::from(k) / (9.0 * bend));
+                [bend * s, bend * (1.0 - c), 2.0 * z - 1.0]
+            })
+        });
+        let standing = steps().flat_map(|z| steps().map(move |r| [0.0, r, 2.0 * z - 0.93]));
+        let places: Vec<f64> = (std::iter::once([0.0; 3]).chain(bent).chain(standing))
+            .filter(|p| p.iter().map(|x| x * x).sum::<f64>() < RADIUS * RADIUS)
+            .flatten()
+            .collect();
+        let fit = decompose(&places).unwrap();
+        assert_eq!(fit.cells_at_curve, [3]);
+        assert!(fit.center_offset < 0.02, "{}", fit.center_offset);
     }
 
     #[test]

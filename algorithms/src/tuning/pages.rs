@@ -41,7 +41,7 @@ impl PagesTuning {
         gap: 0.2,
         widest: 0.6,
         share: 0.03,
-        straight: 0.3,
+        straight: 0.6,
         sine: 0.15,
         out: 0.5,
     };
