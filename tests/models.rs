@@ -120,6 +120,15 @@ const CASES: [Case; 17] = [
         links: &[(LinkKind::JunctionEnd, Some(2))],
     },
     Case {
+        surface: "divided_sphere",
+        points: 8_000,
+        eps: 0.219,
+        dl: 0.11,
+        models: &ModelName::AUTO,
+        betti: [1, 0, 2],
+        links: &[(LinkKind::Junction, None)],
+    },
+    Case {
         surface: "three_squares",
         points: 5_000,
         eps: 0.322,

@@ -267,6 +267,34 @@ fn three_half_discs() -> SampleSurface {
     )
 }
 
+/// A sphere with a wall: the two sides of the T-junction bend as the sphere does.
+fn divided_sphere() -> SampleSurface {
+    SampleSurface::new(
+        "divided_sphere",
+        "the unit sphere with a disc through its middle",
+        vec![
+            Box::new(SphereCap::sphere("sphere", [0.0; 3], 1.0)),
+            Box::new(Ring::new(
+                "wall",
+                vec![0.0; 3],
+                [axis(0, 1.0).to_vec(), axis(1, 1.0).to_vec()],
+                [0.0, 1.0],
+            )),
+        ],
+        Truth {
+            junction_curves: 1,
+            ..plain([1, 0, 2], &[SPHERE, DISC], 0)
+        },
+        8_000,
+    )
+    .singular(move |m| {
+        vec![curve(CurveKind::Junction, true, m, |t| {
+            let (s, c) = libm::sincos(TAU * t);
+            vec![c, s, 0.0]
+        })]
+    })
+}
+
 /// A segment that stands on a sphere.
 fn sphere_with_hair() -> SampleSurface {
     SampleSurface::new(
@@ -304,6 +332,7 @@ pub(super) fn singular_surfaces() -> Vec<SampleSurface> {
         ),
         book("book_5", "five pages that meet in one side", 5),
         book("book_8", "eight pages that meet in one side", 8),
+        divided_sphere(),
         sphere_with_hair(),
     ]);
     all.extend(boxes());
