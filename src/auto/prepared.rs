@@ -10,12 +10,19 @@ use crosscap_algorithms::tuning::PreparationTuning;
 use crosscap_backends::parallel::Threads;
 use crosscap_core::Error;
 
+/// Scatter across the surface, in spacings, below which the points are first taken as they are: moving them rounds a little of what
+/// is about a crossing, a wall or a rim. Of eight clouds of sheets that meet, scattered by 0.1 to 0.15, six passed as they were and five
+/// moved, and each of them in one way or the other; scattered by 0.28 two spheres passed only moved.
+const SLIGHT: f64 = 0.2;
+
 /// The input of all attempts.
 pub(super) struct Prepared<'a> {
     /// What was given.
     given: Input<'a>,
     /// The points that are worked on instead, where something was done about them.
     better: Option<WorkedOn>,
+    /// Whether the points are still taken as they were given, though there are better ones.
+    as_given: bool,
     /// Where points may be left out: what decides about them.
     tuning: Option<PreparationTuning>,
 }
@@ -26,6 +33,7 @@ impl<'a> Prepared<'a> {
         Self {
             given,
             better: None,
+            as_given: false,
             tuning: None,
         }
     }
@@ -43,8 +51,23 @@ impl<'a> Prepared<'a> {
         Ok(Self {
             given,
             better: better.filter(WorkedOn::is_changed),
+            as_given: false,
             tuning: Some(tuning.clone()),
         })
+    }
+
+    /// The same, where they scatter so little that they may be right as they are taken as they were given, until they are
+    /// [moved](Self::are_moved).
+    pub(super) fn as_given_at_first(self) -> Self {
+        Self {
+            as_given: (self.better.as_ref()).is_some_and(|better| better.scatters_below(SLIGHT)),
+            ..self
+        }
+    }
+
+    /// From now on points that scatter are moved; whether they were not before.
+    pub(super) fn are_moved(&mut self) -> bool {
+        std::mem::take(&mut self.as_given)
     }
 
     /// The points that are worked on.
@@ -70,7 +93,7 @@ impl<'a> Prepared<'a> {
         parameters: &Parameters,
         make: &mut dyn FnMut(Parameters) -> Result<Pipeline, Error>,
     ) -> Result<Made, Error> {
-        let mut better = self.better.clone();
+        let mut better = self.better.clone().filter(|_| !self.as_given);
         let mut rounds = 0;
         loop {
             let outcome = match &better {

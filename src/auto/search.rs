@@ -155,6 +155,11 @@ impl Auto {
         } else {
             Prepared::unchanged(input)
         };
+        // Who asks for it has the points moved, however little they scatter.
+        let prepared = match self.pinned().prepare {
+            None => prepared.as_given_at_first(),
+            Some(_) => prepared,
+        };
         let Choice {
             density,
             parameters: first,
@@ -284,6 +289,10 @@ impl Progress<'_> {
             confirmations += usize::from(passed.is_some());
             let next = match &passed {
                 Some((_, parameters)) => self.confirming(parameters, confirmations, &density),
+                None if self.prepared.are_moved() => Some((
+                    self.attempts[0].parameters.clone(),
+                    "the points moved onto fits, as they scatter",
+                )),
                 None if self.is_hopeless() => None,
                 None => self.next(&density),
             };

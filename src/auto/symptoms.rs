@@ -20,6 +20,10 @@ pub(super) enum Symptom {
     Coarse,
     /// Edges of the mesh end where nothing was found to end.
     Ends,
+    /// Stars stay open, and what was taken for a closed surface has gaps.
+    Torn,
+    /// Stars stay open on what was taken for one surface that may end.
+    Frayed,
     /// Stars stay open.
     Open,
     /// The mesh, or a curve of its own, covers gaps of the points, or a curve has too few landmarks.
@@ -56,7 +60,12 @@ impl Symptom {
         {
             Self::Folds
         } else if !outcome.failures.is_empty() {
-            Self::Open
+            let assumed = &outcome.report.parameters;
+            match assumed.is_closed() {
+                true if found(&|v| v.kind == ViolationKind::BridgedGap) => Self::Torn,
+                false if assumed.surface => Self::Frayed,
+                _ => Self::Open,
+            }
         } else if Self::is_coarse(outcome) {
             Self::Coarse
         } else if found(&|v| v.kind.level() == Level::Edges) {
@@ -108,6 +117,14 @@ impl Symptom {
             ],
             Self::Folds | Self::Open => &[
                 Widened, Spaced, Creased, Smaller, Closed, Unfolded, Ending, Local, Finer,
+            ],
+            // Gaps that are no chance speak against a closed surface, whatever else is wrong.
+            Self::Torn => &[
+                Widened, Ending, Spaced, Creased, Smaller, Unfolded, Local, Finer,
+            ],
+            // What is left open is more often near the end, which a smaller neighborhood sees better, than at a crease.
+            Self::Frayed => &[
+                Widened, Spaced, Smaller, Creased, Closed, Unfolded, Local, Finer,
             ],
             Self::Coarse => &[Opened, Smaller, Ending, Finer, Spaced, Closed, Unfolded],
             Self::Ends => &[Widened, Ending, Spaced, Smaller, Closed, Unfolded],

@@ -90,6 +90,15 @@ impl WorkedOn {
         self.changed
     }
 
+    /// Whether all that was done is that they were moved, and they scatter by less than so many spacings.
+    pub(super) fn scatters_below(&self, spacings: f64) -> bool {
+        self.subspace.is_none()
+            && self.summary.as_ref().is_some_and(|summary| {
+                let slight = summary.noise_of_spacing.is_some_and(|n| n < spacings);
+                summary.moved.is_some() && !summary.outliers_left_out && slight
+            })
+    }
+
     /// Rows of the input that they are, increasing.
     pub(super) fn rows(&self) -> &[usize] {
         &self.rows

@@ -112,6 +112,11 @@ impl Parameters {
         self
     }
 
+    /// Whether every point is taken as one of a surface that does not end.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.surface && self.boundary.is_empty() && !self.models.contains(&ModelName::Boundary)
+    }
+
     /// Radius of the charts.
     pub fn chart_radius(&self) -> f64 {
         let usual = CHART_SEPARATIONS * self.dl;
@@ -162,8 +167,7 @@ impl Parameters {
                 "less than eps: the band of the curve lies inside the neighborhood",
             );
         }
-        let closed =
-            self.surface && self.boundary.is_empty() && !self.models.contains(&ModelName::Boundary);
+        let closed = self.is_closed();
         if self.spaces.uses(MetricName::Conformal) && !closed {
             return Err(Error::Parameter {
                 name: "metric",
