@@ -67,6 +67,39 @@ fn what_passes_after_a_failure_is_not_handed_over_unconfirmed() {
     assert!(search.is_verified());
 }
 
+/// Scattered by 0.13 of their spacing: the first attempt takes the points as they are, the second moves them.
+#[test]
+fn points_that_scatter_little_are_moved_for_the_second_attempt() {
+    let surface = SampleSurface::find("sphere").unwrap();
+    let noisy = Sampling {
+        noise: 0.01,
+        ..Sampling::new(2000, 5)
+    };
+    let cloud = surface.sample(&noisy).unwrap().points;
+    let moved = |search: &crate::auto::Search| search.preparation.as_ref().and_then(|p| p.moved);
+    let plain = Auto::default().reconstruct(&cloud).unwrap();
+    assert!(plain.is_verified() && plain.attempts.len() == 1);
+    assert!(moved(&plain).is_none());
+
+    let search = Auto::default()
+        .search(Input::Points(&cloud), &mut spoiled(&[0]))
+        .unwrap();
+    assert!(search.is_verified());
+    assert!(moved(&search).is_some_and(|by| by > 0.005));
+    let [first, second, _] = &search.attempts[..] else {
+        unreachable!("three attempts")
+    };
+    assert_eq!(first.parameters, second.parameters);
+    assert!(second.reason.contains("moved"));
+
+    let asked = Auto::new(Pinned {
+        prepare: Some(true),
+        ..Pinned::default()
+    });
+    let search = asked.reconstruct(&cloud).unwrap();
+    assert!(search.is_verified() && moved(&search).is_some());
+}
+
 /// The last attempt is kept to confirm one that passed: an attempt that no other can confirm is not made.
 #[test]
 fn the_last_attempt_confirms() {
