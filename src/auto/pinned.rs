@@ -49,7 +49,8 @@ pub struct Pinned {
     /// [`Spaces::neighborhoods`].
     pub neighborhoods: Option<Neighborhoods>,
     /// Whether outliers are left out, and points that scatter moved onto fits of their neighborhoods;
-    /// where nothing is said they are unless eps and dl are both given.
+    /// where nothing is said they are unless eps and dl are both given, those that scatter by less than a fifth of their
+    /// spacing for the second attempt.
     pub prepare: Option<bool>,
     /// [`Parameters::threads`].
     pub threads: Option<usize>,

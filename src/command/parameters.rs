@@ -137,7 +137,7 @@ pub struct ParameterArguments {
     pub spaces: SpaceArguments,
 
     /// Leave outliers out and move points that scatter onto fits of their neighborhoods, where there are any: yes or no
-    /// [default: yes; no where --eps and --dl are both given]
+    /// [default: yes, points that scatter little for the second attempt; no where --eps and --dl are both given]
     #[arg(long, help_heading = ATTEMPTS, hide_short_help = true, value_name = "YES|NO", value_parser = yes_or_no)]
     pub prepare: Option<bool>,
 
