@@ -12,17 +12,16 @@ fn search(name: &str, sampling: &Sampling) -> Search {
 }
 
 /// Where two sheets of Henneberg's surface part after their crossing ends, each is in the neighborhoods of the other's boundary for four
-/// spacings and more. Seeds 21, 24 and 27 were refused at every attempt before boundaries were followed there.
+/// spacings and more. Seeds 21, 24 and 27 were refused at every attempt before boundaries were followed there; of these one is run, and
+/// what is done by itself in the tests of `stratify/analysis/continued.rs`.
 #[test]
 fn a_boundary_goes_on_where_another_sheet_is_near() {
-    for seed in [21, 24, 27] {
-        let found = search("henneberg", &Sampling::new(12_800, seed));
-        assert!(found.is_verified(), "{seed}");
-        let outcome = found.outcome.unwrap();
-        assert_eq!(outcome.homology.betti_rational, [1, 5, 0], "{seed}");
-        let boundary = &outcome.certificate.edges.as_ref().unwrap().boundaries;
-        assert_eq!(boundary.len(), 2, "{seed}: {boundary:?}");
-    }
+    let found = search("henneberg", &Sampling::new(12_800, 24));
+    assert!(found.is_verified());
+    let outcome = found.outcome.unwrap();
+    assert_eq!(outcome.homology.betti_rational, [1, 5, 0]);
+    let boundary = &outcome.certificate.edges.as_ref().unwrap().boundaries;
+    assert_eq!(boundary.len(), 2, "{boundary:?}");
 }
 
 /// Half a spacing of noise, a tenth of eps: next to the crossing no point says by itself which sheet it is of.
