@@ -35,8 +35,9 @@ fn settings() -> Settings {
     }
 }
 
-/// The kit's own number of inputs, for what goes through the same code as its twin in double precision.
-fn single() -> Settings {
+/// The kit's own number of inputs, for what takes long: estimators that go through the same code as their twins in double precision, and
+/// books of 600 points and more.
+fn usual() -> Settings {
     Settings::default()
 }
 
@@ -79,30 +80,30 @@ const WITHIN: EdgeRule = EdgeRule::Within(1.0);
 
 law_tests! {
     mod euclidean_metric = metric(euclidean::<f64>), settings: settings();
-    mod euclidean_metric_f32 = metric(euclidean::<f32>), settings: single();
+    mod euclidean_metric_f32 = metric(euclidean::<f32>), settings: settings();
     mod given_metric = metric(given::<f64>), settings: settings();
-    mod given_metric_f32 = metric(given::<f32>), settings: single();
+    mod given_metric_f32 = metric(given::<f32>), settings: settings();
     mod lifted_metric = metric(lifted::<f64>), settings: settings();
-    mod lifted_metric_f32 = metric(lifted::<f32>), settings: single();
+    mod lifted_metric_f32 = metric(lifted::<f32>), settings: settings();
     mod tree_metric = metric(kd_tree::<f64>), settings: settings();
-    mod tree_metric_f32 = metric(kd_tree::<f32>), settings: single();
+    mod tree_metric_f32 = metric(kd_tree::<f32>), settings: settings();
     mod geodesic_metric_of_few = metric(|cloud| geodesic::<f64>(cloud, FEW)), settings: settings();
     mod geodesic_metric_of_more = metric(|cloud| geodesic::<f64>(cloud, MORE)), settings: settings();
     mod geodesic_metric_within = metric(|cloud| geodesic::<f64>(cloud, WITHIN)), settings: settings();
-    mod geodesic_metric_of_few_f32 = metric(|cloud| geodesic::<f32>(cloud, FEW)), settings: single();
-    mod geodesic_metric_of_more_f32 = metric(|cloud| geodesic::<f32>(cloud, MORE)), settings: single();
-    mod geodesic_metric_within_f32 = metric(|cloud| geodesic::<f32>(cloud, WITHIN)), settings: single();
+    mod geodesic_metric_of_few_f32 = metric(|cloud| geodesic::<f32>(cloud, FEW)), settings: settings();
+    mod geodesic_metric_of_more_f32 = metric(|cloud| geodesic::<f32>(cloud, MORE)), settings: settings();
+    mod geodesic_metric_within_f32 = metric(|cloud| geodesic::<f32>(cloud, WITHIN)), settings: settings();
     mod checked_metric = metric(|cloud| CheckedMetric::new(euclidean::<f64>(cloud))),
         settings: settings();
 }
 
 law_tests! {
     mod tree_oracle = oracle(|c| (kd_tree::<f64>(c), kd_tree::<f64>(c))), settings: settings();
-    mod tree_oracle_f32 = oracle(|c| (kd_tree::<f32>(c), kd_tree::<f32>(c))), settings: single();
+    mod tree_oracle_f32 = oracle(|c| (kd_tree::<f32>(c), kd_tree::<f32>(c))), settings: settings();
     mod tree_of_euclidean = oracle(|c| (euclidean::<f64>(c), kd_tree::<f64>(c))),
         settings: settings();
     mod tree_of_euclidean_f32 = oracle(|c| (euclidean::<f32>(c), kd_tree::<f32>(c))),
-        settings: single();
+        settings: settings();
     mod brute_force_of_given = oracle(|c| (given::<f64>(c), BruteForceOracle::new(given::<f64>(c)))),
         settings: settings();
     mod brute_force_of_lifted_f32 =
@@ -114,31 +115,31 @@ law_tests! {
     mod geodesic_oracle_within = oracle(|c| (geodesic::<f64>(c, WITHIN), geodesic::<f64>(c, WITHIN))),
         settings: settings();
     mod geodesic_oracle_of_few_f32 = oracle(|c| (geodesic::<f32>(c, FEW), geodesic::<f32>(c, FEW))),
-        settings: single();
+        settings: settings();
     mod geodesic_oracle_of_more_f32 = oracle(|c| (geodesic::<f32>(c, MORE), geodesic::<f32>(c, MORE))),
-        settings: single();
+        settings: settings();
     mod geodesic_oracle_within_f32 =
-        oracle(|c| (geodesic::<f32>(c, WITHIN), geodesic::<f32>(c, WITHIN))), settings: single();
+        oracle(|c| (geodesic::<f32>(c, WITHIN), geodesic::<f32>(c, WITHIN))), settings: settings();
 }
 
 law_tests! {
     mod principal_components = estimator(&PrincipalComponents::<f64>::new(0.05).unwrap()),
         settings: settings();
     mod principal_components_f32 = estimator(&PrincipalComponents::<f32>::new(0.05).unwrap()),
-        settings: single();
+        settings: usual();
     mod strict_principal_components = estimator(&PrincipalComponents::<f64>::new(0.01).unwrap()),
         settings: settings();
     mod strict_principal_components_f32 = estimator(&PrincipalComponents::<f32>::new(0.01).unwrap()),
-        settings: single();
+        settings: usual();
     mod maximum_likelihood = estimator(&MaximumLikelihood::<f64>::new()), settings: settings();
-    mod maximum_likelihood_f32 = estimator(&MaximumLikelihood::<f32>::new()), settings: single();
+    mod maximum_likelihood_f32 = estimator(&MaximumLikelihood::<f32>::new()), settings: usual();
     mod correlation_dimension = estimator(&CorrelationDimension::<f64>::new()), settings: settings();
     mod correlation_dimension_f32 = estimator(&CorrelationDimension::<f32>::new()),
-        settings: single();
+        settings: usual();
     mod packing_numbers = estimator(&PackingNumbers::<f64>::new()), settings: settings();
-    mod packing_numbers_f32 = estimator(&PackingNumbers::<f32>::new()), settings: single();
+    mod packing_numbers_f32 = estimator(&PackingNumbers::<f32>::new()), settings: usual();
     mod spanning_tree = estimator(&SpanningTree::<f64>::new()), settings: settings();
-    mod spanning_tree_f32 = estimator(&SpanningTree::<f32>::new()), settings: single();
+    mod spanning_tree_f32 = estimator(&SpanningTree::<f32>::new()), settings: usual();
 }
 
 /// Instances of so many points.
@@ -187,7 +188,7 @@ law_tests! {
     mod t_junction = model(&Book::new(0.1, 0.05).unwrap(), &of(300..=500, &instances::t_junction)),
         settings: settings();
     mod book = model(&Book::new(0.1, 0.05).unwrap(), &of(600..=900, &instances::book)),
-        settings: settings();
+        settings: usual();
     // Two thirds of them are the neighborhood, and the model asks for 48.
     mod triple_point =
         model(&TriplePoint::new(0.1, 0.05).unwrap(), &of(150..=300, &instances::triple_point)),
@@ -288,9 +289,9 @@ fn many() -> Settings {
 law_tests! {
     mod classical_scaling = chart(&ClassicalScaling), settings: settings();
     mod random_greedy = selector(&RandomGreedy::<f64>::new()), settings: settings();
-    mod random_greedy_f32 = selector(&RandomGreedy::<f32>::new()), settings: single();
+    mod random_greedy_f32 = selector(&RandomGreedy::<f32>::new()), settings: settings();
     mod max_min = selector(&MaxMin::<f64>::new()), settings: settings();
-    mod max_min_f32 = selector(&MaxMin::<f32>::new()), settings: single();
+    mod max_min_f32 = selector(&MaxMin::<f32>::new()), settings: settings();
     mod planar_predicate = compatibility(&PlanarPredicate), settings: many();
     mod linear_program = compatibility(&LinearProgramTest), settings: many();
     mod minimum_circumradius = rule(&MinimumCircumradius), settings: settings();
