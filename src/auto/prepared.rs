@@ -58,7 +58,7 @@ impl<'a> Prepared<'a> {
 
     /// The same, where they scatter so little that they may be right as they are taken as they were given, until they are
     /// [moved](Self::are_moved).
-    pub(super) fn as_given_at_first(self) -> Self {
+    pub(super) fn given_at_first(self) -> Self {
         Self {
             as_given: (self.better.as_ref()).is_some_and(|better| better.scatters_below(SLIGHT)),
             ..self

@@ -157,7 +157,7 @@ impl Auto {
         };
         // Who asks for it has the points moved, however little they scatter.
         let prepared = match self.pinned().prepare {
-            None => prepared.as_given_at_first(),
+            None => prepared.given_at_first(),
             Some(_) => prepared,
         };
         let Choice {
