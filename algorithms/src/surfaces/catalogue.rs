@@ -1,7 +1,10 @@
 //! The catalogue of sample surfaces.
 
 use super::faceted::faceted_surfaces;
+use super::foam::foam;
 use super::further::further_surfaces;
+use super::higher::higher_surfaces;
+use super::minimal::minimal_surfaces;
 use super::paper::paper_surfaces;
 use super::plates::plates;
 use super::singular::singular_surfaces;
@@ -15,6 +18,9 @@ pub fn catalogue() -> Vec<SampleSurface> {
     all.extend(singular_surfaces());
     all.extend(faceted_surfaces());
     all.extend(plates());
+    all.push(foam());
+    all.extend(minimal_surfaces());
+    all.extend(higher_surfaces());
     all
 }
 

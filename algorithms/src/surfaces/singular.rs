@@ -331,6 +331,7 @@ pub(super) fn singular_surfaces() -> Vec<SampleSurface> {
             1.0,
         ),
         book("book_5", "five pages that meet in one side", 5),
+        book("book_6", "six pages that meet in one side", 6),
         book("book_8", "eight pages that meet in one side", 8),
         divided_sphere(),
         sphere_with_hair(),
