@@ -258,7 +258,7 @@ fn sheets_that_are_one_in_the_mesh_are_told_and_more_points_keep_them_apart() {
 
 #[test]
 fn sheets_that_no_model_claims_are_claimed_where_there_are_more_points() {
-    let few = sample("two_spheres", 600);
+    let few = sample("two_spheres", 500);
     let lengths = Auto::default().choose(Input::Points(&few)).unwrap();
     let refusal = refused(&few, lengths.parameters, FaultKind::Unclaimed);
     assert!(matches!(refusal.advice, Advice::Model), "{refusal}");
