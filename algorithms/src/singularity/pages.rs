@@ -66,11 +66,20 @@ impl Pages {
 
     /// Pairs of pages that are one sheet, those that are straightest first, each page once.
     pub(super) fn pairs(&self) -> Vec<[usize; 2]> {
+        let pairs = self.pairs_within(self.tuning.straight);
+        match (pairs.len(), self.out.len()) {
+            (0, 3) => self.pairs_within(self.tuning.bent),
+            _ => pairs,
+        }
+    }
+
+    /// Those that are straight up to an angle.
+    fn pairs_within(&self, most: f64) -> Vec<[usize; 2]> {
         let mut straight: Vec<(f64, [usize; 2])> = Vec::new();
         for (b, second) in self.out.iter().enumerate() {
             for (a, first) in self.out[..b].iter().enumerate() {
                 let bend = PI - first.angle(second);
-                if bend < self.tuning.straight {
+                if bend < most {
                     straight.push((bend, [a, b]));
                 }
             }

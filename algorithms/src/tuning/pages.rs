@@ -24,6 +24,9 @@ pub struct PagesTuning {
     pub share: f64,
     /// Two pages at an angle that is straight up to this, in radians, are one sheet.
     pub straight: f64,
+    /// The same of three pages of which no two are: the two sides of a sheet that bends by a quarter of the ball's radius are seen to turn by
+    /// 0.4 from the line. Where three sheets meet at such an angle, the Y-junction competes.
+    pub bent: f64,
     /// Sheets that meet at an angle of a smaller sine do not locate a curve.
     pub sine: f64,
     /// Where the sides of a sheet are told apart, in radii from the curve.
@@ -41,7 +44,8 @@ impl PagesTuning {
         gap: 0.2,
         widest: 0.6,
         share: 0.03,
-        straight: 0.6,
+        straight: 0.3,
+        bent: 0.6,
         sine: 0.15,
         out: 0.5,
     };
