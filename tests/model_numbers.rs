@@ -43,6 +43,7 @@ enum Kind {
     Cone = 19,
     Umbrella = 20,
     EndOfDoubleCurve = 21,
+    ConeAndStrayPoints = 22,
 }
 
 /// Unit vector at right angles to the first axis.
@@ -217,7 +218,11 @@ fn tip(kind: Kind, draw: &mut Draw) -> Vec<Place> {
         let height = slope * (x * x + y * y + neck * neck).sqrt();
         [x + at, y, if down { -height } else { height }]
     });
-    lifted.collect()
+    let mut places: Vec<Place> = lifted.collect();
+    if let Kind::ConeAndStrayPoints = kind {
+        places.extend((0..30).map(|_| [0; 3].map(|_| draw.between(-1.0, 1.0))));
+    }
+    places
 }
 
 fn neighborhood(kind: Kind, seed: u64) -> Instance {
@@ -226,7 +231,7 @@ fn neighborhood(kind: Kind, seed: u64) -> Instance {
     let points = match kind {
         Kind::Rim | Kind::BentRim | Kind::CornerOfRim => rim(kind, &mut draw),
         Kind::Pages | Kind::PagesWithPointsBeyond => pages(kind, &mut draw),
-        Kind::Cone | Kind::Umbrella => tip(kind, &mut draw),
+        Kind::Cone | Kind::ConeAndStrayPoints | Kind::Umbrella => tip(kind, &mut draw),
         Kind::SecondSheetSmall
         | Kind::EdgeWithPointsBeyond
         | Kind::EndOfDoubleCurve
@@ -329,7 +334,7 @@ fn without_a_number_what_is_none_is_believed() {
         BookEnd book_end.end.astray out 1.0, Cone;
         BookEnd book_end.pages.across out 0.0, CurveOnSheet;
         BookEnd book_end.pages.near out 0.0, EdgeWithPointsBeyond;
-        ConePoint cone_point.astray out 1.0, Cone;
+        ConePoint cone_point.astray out 1.0, ConeAndStrayPoints;
         BoundaryCorner boundary_corner.reach out 10.0, EdgeWithPointsBeyond;
         BoundaryCorner boundary_corner.missing out 0.0, CornerOfRim;
     };

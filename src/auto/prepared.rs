@@ -11,7 +11,7 @@ use crosscap_backends::parallel::Threads;
 use crosscap_core::Error;
 
 /// Scatter across the surface, in spacings, below which the points are first taken as they are: moving them rounds a little of what
-/// is about a crossing, a wall or a rim. Of eight clouds of sheets that meet, scattered by 0.1 to 0.15, six passed as they were and five
+/// is about a crossing, a wall or a rim. Of six clouds of sheets that meet, scattered by 0.1 to 0.15, four passed as they were and three
 /// moved, and each of them in one way or the other; scattered by 0.28 two spheres passed only moved.
 const SLIGHT: f64 = 0.2;
 
@@ -57,7 +57,7 @@ impl<'a> Prepared<'a> {
     }
 
     /// The same, where they scatter so little that they may be right as they are taken as they were given, until they are
-    /// [moved](Self::are_moved).
+    /// [moved](Self::move_from_now_on).
     pub(super) fn given_at_first(self) -> Self {
         Self {
             as_given: (self.better.as_ref()).is_some_and(|better| better.scatters_below(SLIGHT)),
@@ -65,8 +65,8 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// From now on points that scatter are moved; whether they were not before.
-    pub(super) fn are_moved(&mut self) -> bool {
+    /// From now on points that scatter are moved; `false` where nothing changes by that.
+    pub(super) fn move_from_now_on(&mut self) -> bool {
         std::mem::take(&mut self.as_given)
     }
 

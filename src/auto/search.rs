@@ -289,7 +289,7 @@ impl Progress<'_> {
             confirmations += usize::from(passed.is_some());
             let next = match &passed {
                 Some((_, parameters)) => self.confirming(parameters, confirmations, &density),
-                None if self.prepared.are_moved() => Some((
+                None if self.prepared.move_from_now_on() => Some((
                     self.attempts[0].parameters.clone(),
                     "the points moved onto fits, as they scatter",
                 )),

@@ -5,7 +5,7 @@ use super::flats::Flat;
 use super::pages::Pages;
 use super::plane_pair::PlanePair;
 use super::sheets::Sheets;
-use super::tolerance::Tolerance;
+use super::tolerance::{LEAST_HELD, Tolerance};
 use crate::tuning::PagesTuning;
 use crosscap_core::Rejection;
 use nalgebra::Vector3;
@@ -204,7 +204,7 @@ impl PageSheets {
         for (row, x) in points.iter().enumerate() {
             held[self.page(row, x)] += 1;
         }
-        let least = (least * points.len() as f64).max(3.0);
+        let least = (least * points.len() as f64).max(LEAST_HELD as f64);
         match held[..self.count()]
             .iter()
             .position(|&h| (h as f64) < least)

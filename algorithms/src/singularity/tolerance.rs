@@ -41,6 +41,9 @@ pub(super) fn vectors<const D: usize>(local: &LocalPoints<'_>) -> Vec<SVector<f6
         .collect()
 }
 
+/// Fewest points of a cell: fewer span no plane.
+pub(super) const LEAST_HELD: usize = 3;
+
 /// Refuses neighborhoods of fewer points.
 pub(super) fn at_least(needed: usize, local: &LocalPoints<'_>) -> Result<(), Rejection> {
     if local.fitted < needed {

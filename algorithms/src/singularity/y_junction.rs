@@ -4,16 +4,13 @@ use super::flats::{Flat, candidates, greedy};
 use super::one_fit::{OneFit, located};
 use super::patch::PATCH_POINTS;
 use super::sheets::Sheets;
-use super::tolerance::{Tolerance, at_least, vectors};
+use super::tolerance::{LEAST_HELD, Tolerance, at_least, vectors};
 use super::vanishing::Vanishing;
 use crate::tuning::YJunctionTuning;
 use crosscap_core::{
     Decomposition, Error, Label, LocalPoints, Located, Rejection, SingularityModel, Stratum,
 };
 use nalgebra::{Matrix3, Vector3};
-
-/// Fewest points of a cell.
-const LEAST_HELD: usize = 3;
 
 /// Three half sheets of space on a common curve, at any angles: a Y-junction.
 ///

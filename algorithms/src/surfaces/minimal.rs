@@ -147,9 +147,8 @@ fn arcs<P: Piece>(
 
 /// The places at which the arcs end: there the boundary crosses itself.
 fn ends<P: Piece>(piece: &P, arcs: usize, at: impl Fn(usize, f64) -> [f64; 2]) -> Vec<Vec<f64>> {
-    let both = (0..arcs).flat_map(|k| [[k as f64, 0.0], [k as f64, 1.0]]);
-    both.map(|[k, t]| place_at(piece, at(k as usize, t)))
-        .collect()
+    let both = (0..arcs).flat_map(|k| [(k, 0.0), (k, 1.0)]);
+    both.map(|(k, t)| place_at(piece, at(k, t))).collect()
 }
 
 /// Both of them.

@@ -34,14 +34,20 @@ impl Progress<'_> {
     fn others_than(&self, attempt: usize) -> Option<Parameters> {
         let near = (self.attempts.get(attempt)).filter(|attempt| attempt.end.is_near_miss())?;
         let of = &near.parameters;
-        let alike = |other: &&Attempt| {
+        let alike = |other: &Attempt| {
             let other = &other.parameters;
             let near = (other.dl / of.dl - 1.0).abs() < ALIKE;
             near && other.spaces == of.spaces
                 && other.models == of.models
                 && other.surface == of.surface
         };
-        let times = self.attempts.iter().filter(alike).count();
+        // Equal parameters are the same landmarks, first of points as they were given and then of points that were moved.
+        let again = |k: &usize| {
+            let own = &self.attempts[*k].parameters;
+            self.attempts[..*k].iter().any(|a| a.parameters == *own)
+        };
+        let all = (0..self.attempts.len()).filter(|k| !again(k));
+        let times = all.filter(|&k| alike(&self.attempts[k])).count();
         // The first time there is nothing alike but the attempt itself.
         if times > AGAIN {
             return None;
