@@ -67,6 +67,8 @@ pub(crate) struct Engines {
     /// Straight lines between them.
     pub(crate) euclidean: EuclideanOracle<f64>,
     geodesic: Option<GeodesicMetric<f64>>,
+    /// Tangent planes, where charts or the graph ask for them.
+    planes: Option<TangentField>,
     conformal: Option<Conformal>,
     /// Straight lines in the other of the two: lifted for charts alone, or not lifted for charts.
     other: Option<EuclideanOracle<f64>>,
@@ -95,15 +97,16 @@ impl Engines {
             (Some(lifted), MetricName::Lifted) => (lifted, Some(flat)),
             (lifted, _) => (flat, lifted),
         };
-        let sheets = if spaces.sheets && spaces.uses(MetricName::Geodesic) {
-            let cloud = euclidean.cloud();
-            let field = TangentField::new(cloud, &euclidean, tuning, threads)?;
-            Some(field)
+        let along = spaces.uses(MetricName::Geodesic);
+        let planes = if along && (spaces.sheets || spaces.charts() == MetricName::Geodesic) {
+            let cloud = euclidean.cloud().clone();
+            Some(TangentField::new(cloud, &euclidean, tuning, threads)?)
         } else {
             None
         };
-        let geodesic = if spaces.uses(MetricName::Geodesic) {
-            let joins = |a, b| sheets.as_ref().is_none_or(|field| field.joins(a, b));
+        let geodesic = if along {
+            let field = planes.as_ref().filter(|_| spaces.sheets);
+            let joins = |a, b| field.is_none_or(|field| field.joins(a, b));
             let build = || GeodesicMetric::joining(&euclidean, spaces.graph, &joins);
             Some(threads.install(build)?)
         } else {
@@ -118,6 +121,7 @@ impl Engines {
             cloud: (**euclidean.cloud()).clone(),
             euclidean,
             geodesic,
+            planes,
             conformal,
             other,
             spaces: spaces.clone(),
@@ -149,7 +153,12 @@ impl Engines {
             ) => None,
             _ => self.other.as_ref().map(Space::of),
         };
-        own.map_or(ChartSpace::Places, ChartSpace::Metric)
+        let geodesic = self.spaces.charts() == MetricName::Geodesic;
+        match (own, self.planes.as_ref().filter(|_| geodesic)) {
+            (None, _) => ChartSpace::Places,
+            (Some(own), None) => ChartSpace::Metric(own),
+            (Some(paths), Some(planes)) => ChartSpace::Along(paths, planes),
+        }
     }
 
     /// The graph of geodesic distances, where there is one.

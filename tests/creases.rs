@@ -91,7 +91,13 @@ fn paths_cross_a_crease_where_it_is() {
     let cloud = PointCloud::new(3, rows.collect()).unwrap();
     let oracle = EuclideanOracle::new(cloud.clone()).unwrap();
     let rule = EdgeRule::Nearest(20);
-    let field = TangentField::new(&cloud, &oracle, &TangentTuning::MEASURED, &Serial).unwrap();
+    let field = TangentField::new(
+        cloud.clone().into(),
+        &oracle,
+        &TangentTuning::MEASURED,
+        &Serial,
+    )
+    .unwrap();
     let joined = GeodesicMetric::joining(&oracle, rule, &|a, b| field.joins(a, b)).unwrap();
     let plain = GeodesicMetric::new(&oracle, rule).unwrap();
     assert!(joined.report().is_connected());

@@ -189,6 +189,7 @@ impl Parts {
             chart_metric: match &ground.charts {
                 ChartSpace::Places => "places".into(),
                 ChartSpace::Metric(space) => space.metric().name().into(),
+                ChartSpace::Along(space, _) => format!("{}, tangent planes", space.metric().name()),
             },
             estimator: (!self.parameters.surface).then(|| ground.analyzer.estimator.name().into()),
             ..self.makers(ground.chart)

@@ -5,6 +5,7 @@ use super::charts::ChartSpace;
 use super::strata::Strata;
 use crate::audit;
 use crate::execute::{self, Execute};
+use crate::tangents::TangentField;
 use crosscap_core::{
     CellNeighborhood, Error, Landmark, MetricSpace, Row, Scalar, SparseDistances, Table,
 };
@@ -17,8 +18,8 @@ pub(super) fn within_charts<S: Scalar>(
     rows: &Table<Landmark, Row>,
     neighborhoods: &[CellNeighborhood],
 ) -> Result<SparseDistances<S>, Error> {
-    match charts {
-        ChartSpace::Places => {
+    match charts.space() {
+        None => {
             let places = strata.places().ok_or_else(|| Error::Shape {
                 found: "points without coordinates".into(),
                 expected: "coordinates, or a metric for the charts".into(),
@@ -28,9 +29,10 @@ pub(super) fn within_charts<S: Scalar>(
                 S::of(places.squared_distance(p, q).sqrt())
             })
         }
-        ChartSpace::Metric(space) => {
+        Some(space) => {
             let pairs = pairs(neighborhoods.iter().map(|x| x.members()));
-            let mut lengths = lengths(analyzer.execute, space.metric(), rows, &pairs)?;
+            let (execute, planes) = (analyzer.execute, charts.planes());
+            let mut lengths = lengths(execute, space.metric(), planes, rows, &pairs)?;
             add_moves(analyzer, strata, rows, &pairs, &mut lengths);
             let entries = pairs.iter().zip(&lengths).map(|(&(a, b), &d)| (a, b, d));
             SparseDistances::new(rows.len(), entries)
@@ -53,13 +55,14 @@ pub(super) fn pairs<'m>(
     pairs
 }
 
-/// Distances of sorted pairs of landmarks in a metric, asked for row by row.
+/// Distances of sorted pairs of landmarks in a metric, asked for row by row, and made better by tangent planes where there are any.
 ///
 /// # Errors
 /// [`Error::Law`] for one that is NaN or negative.
 pub(super) fn lengths<S: Scalar>(
     execute: &dyn Execute,
     metric: &dyn MetricSpace<Scalar = S>,
+    planes: Option<&TangentField>,
     rows: &Table<Landmark, Row>,
     pairs: &[(Landmark, Landmark)],
 ) -> Result<Vec<S>, Error> {
@@ -71,11 +74,17 @@ pub(super) fn lengths<S: Scalar>(
         metric.distances_to(rows[runs[k][0].0].index(), targets, &mut lengths);
         lengths
     });
-    let lengths: Vec<S> = lengths.into_iter().flatten().collect();
+    let mut lengths: Vec<S> = lengths.into_iter().flatten().collect();
     let wrong = |d: &S| !(d.is_finite() && *d >= S::zero());
     if let Some(at) = lengths.iter().position(wrong) {
         let [p, q] = [pairs[at].0, pairs[at].1].map(|k| rows[k].index());
         audit::distance(metric, p, q)?;
+    }
+    if let Some(planes) = planes {
+        for (length, &(a, b)) in lengths.iter_mut().zip(pairs) {
+            let [p, q] = [a, b].map(|k| rows[k].index());
+            *length = S::of(planes.length(p, q, length.as_f64()));
+        }
     }
     Ok(lengths)
 }

@@ -88,7 +88,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         options: &StratifyOptions,
     ) -> Result<Self, Error> {
         options.check()?;
-        if let ChartSpace::Metric(space) = &charts {
+        if let Some(space) = charts.space() {
             space.audit_metric()?;
         }
         let Analyzer {

@@ -131,7 +131,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
 
     /// Neighborhoods of one sheet without a curve, where nearness alone says what belongs together.
     fn plain(&self, jobs: &[Job]) -> Result<Vec<Option<Members>>, Error> {
-        if let ChartSpace::Metric(_) = self.charts {
+        if self.charts.space().is_some() {
             return Ok(jobs.iter().map(|_| None).collect());
         }
         let tuning = &self.analyzer.tuning.cells;
@@ -239,7 +239,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
         let fits: Vec<&Reference> = self.skeleton.labelling().collect();
         let (region, reach) = match self.charts {
             // Nothing is known of how far a chart reaches in straight lines.
-            ChartSpace::Metric(_) => (
+            ChartSpace::Metric(_) | ChartSpace::Along(..) => (
                 Region::everything(self.strata.len(), self.dl),
                 Table::filled(self.rows.len(), f64::INFINITY),
             ),
@@ -317,7 +317,7 @@ impl<S: Scalar> Neighborhoods<'_, '_, S> {
     fn measure(&self) -> Result<Measure<'_, '_, S>, Error> {
         Ok(match &self.charts {
             ChartSpace::Places => Measure::Places(self.places()?),
-            ChartSpace::Metric(space) => Measure::Metric(space),
+            ChartSpace::Metric(space) | ChartSpace::Along(space, _) => Measure::Metric(space),
         })
     }
 

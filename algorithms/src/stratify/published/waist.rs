@@ -127,12 +127,15 @@ impl<'a, 'p, S: Scalar> PublishedCut<'a, 'p, S> {
         rows: &Table<Landmark, Row>,
         all: &[Vec<Landmark>],
     ) -> Result<SparseDistances<S>, Error> {
-        let metric = match &self.charts {
-            ChartSpace::Places => self.analyzer.space.metric(),
-            ChartSpace::Metric(space) => space.metric(),
-        };
+        let space = self.charts.space().unwrap_or(&self.analyzer.space);
         let pairs = pairs(all.iter().map(|members| &members[..]));
-        let lengths = lengths(self.analyzer.execute, metric, rows, &pairs)?;
+        let lengths = lengths(
+            self.analyzer.execute,
+            space.metric(),
+            self.charts.planes(),
+            rows,
+            &pairs,
+        )?;
         let entries = pairs.iter().zip(&lengths).map(|(&(a, b), &d)| (a, b, d));
         SparseDistances::new(rows.len(), entries)
     }
