@@ -98,7 +98,7 @@ impl Engines {
             (lifted, _) => (flat, lifted),
         };
         let along = spaces.uses(MetricName::Geodesic);
-        let planes = if along && (spaces.sheets || spaces.charts() == MetricName::Geodesic) {
+        let planes = if along && (spaces.sheets || spaces.asks_planes()) {
             let cloud = euclidean.cloud().clone();
             Some(TangentField::new(cloud, &euclidean, tuning, threads)?)
         } else {
@@ -153,8 +153,8 @@ impl Engines {
             ) => None,
             _ => self.other.as_ref().map(Space::of),
         };
-        let geodesic = self.spaces.charts() == MetricName::Geodesic;
-        match (own, self.planes.as_ref().filter(|_| geodesic)) {
+        let planes = (self.planes.as_ref()).filter(|_| self.spaces.asks_planes());
+        match (own, planes) {
             (None, _) => ChartSpace::Places,
             (Some(own), None) => ChartSpace::Metric(own),
             (Some(paths), Some(planes)) => ChartSpace::Along(paths, planes),

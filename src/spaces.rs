@@ -130,6 +130,9 @@ pub struct Spaces {
     /// Edges of the graph join points of one sheet alone, as tangent planes tell sheets apart: a path
     /// then crosses a sharp crease where it is. See [`TangentField`](crosscap_algorithms::tangents::TangentField).
     pub sheets: bool,
+    /// Geodesic distances in charts are lengths of smooth curves between two tangent planes, where these tell, instead of those of paths, which
+    /// are some percent too long, each by its own. See [`TangentField::length`](crosscap_algorithms::tangents::TangentField::length).
+    pub planes: bool,
     /// Distance at which the lifted metric holds two sheets apart that cross at a right angle, unit of
     /// the data; 2 eps when left out.
     pub lift: Option<f64>,
@@ -157,6 +160,7 @@ impl Default for Spaces {
             tri_metric: None,
             graph: EdgeRule::Nearest(GRAPH_NEAREST),
             sheets: false,
+            planes: false,
             lift: None,
             neighborhoods: Neighborhoods::default(),
             wide_charts: false,
@@ -193,6 +197,11 @@ impl Spaces {
         }
         self.lift
             .map_or(Ok(()), |w| positive_length("lift", w).map(drop))
+    }
+
+    /// Whether charts ask tangent planes for their lengths.
+    pub fn asks_planes(&self) -> bool {
+        self.planes && self.charts() == MetricName::Geodesic
     }
 
     /// Whether one of the metrics is this one.

@@ -89,13 +89,14 @@ impl TangentField {
         self.height(a, b) <= limit || self.height(b, a) <= limit
     }
 
-    /// How far it is along the surface from one point to another, given the length of a path through the points, unit of the data.
+    /// How far it is along the surface from one point to another, given the length of a path through the points, unit of the data; `None`
+    /// where the planes do not tell.
     ///
     /// A path through scattered points goes to and fro, and is some percent too long. The cubic whose ends are the two points
     /// and whose tangents there are the chord laid into the two planes is as long as the geodesic up to the fourth order of
     /// the chord c: with m and n the parts of the chord's unit vector across the planes, c (1 + (2 m² + 2 n² - m·n) / 30). It is
-    /// taken where it can be believed, that is where the chord leaves neither plane steeply and the path is hardly longer; around a
-    /// hole, a crease or another sheet the path says what there is to say, and is kept.
+    /// told where it can be believed, that is where the chord leaves neither plane steeply and the path is hardly longer: around a
+    /// hole, a crease or another sheet the path says what there is to say.
     ///
     /// Not a metric, as the triangle inequality may fail by as much as the two kinds of lengths differ. The same, to the bit, in both
     /// directions. `O(N)`.
@@ -110,17 +111,17 @@ impl TangentField {
     /// let oracle = BruteForceOracle::new(Euclidean::new(cloud.clone()));
     /// let field = TangentField::new(cloud.into(), &oracle, &TangentTuning::MEASURED, &Serial)?;
     /// let (a, b) = (20 * 10 + 5, 20 * 10 + 13);
-    /// assert!((field.length(a, b, 0.84) - 0.8).abs() < 2e-3);
+    /// assert!((field.length(a, b, 0.84).unwrap() - 0.8).abs() < 2e-3);
     /// // A path that is much longer goes around something.
-    /// assert_eq!(field.length(a, b, 1.2), 1.2);
+    /// assert_eq!(field.length(a, b, 1.2), None);
     /// # Ok::<(), crosscap_core::Error>(())
     /// ```
-    pub fn length(&self, a: usize, b: usize, path: f64) -> f64 {
+    pub fn length(&self, a: usize, b: usize, path: f64) -> Option<f64> {
         let (a, b) = (a.min(b), a.max(b));
         let (p, q) = (self.cloud.point(a), self.cloud.point(b));
         let square: f64 = p.iter().zip(q).map(|(p, q)| (q - p) * (q - p)).sum();
         if square <= 0.0 {
-            return path;
+            return None;
         }
         let along = |e: &[f64]| {
             let products = p.iter().zip(q).zip(e).map(|((p, q), e)| (q - p) * e);
@@ -141,10 +142,7 @@ impl TangentField {
         }
         let length = square.sqrt() * (1.0 + (2.0 * m + 2.0 * n - both) / 30.0);
         let steepest = self.tuning.steepest * self.tuning.steepest;
-        if m.max(n) < steepest && path <= self.tuning.longer * length {
-            length
-        } else {
-            path
-        }
+        let believed = m.max(n) < steepest && path <= self.tuning.longer * length;
+        believed.then_some(length)
     }
 }

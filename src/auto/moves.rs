@@ -145,6 +145,7 @@ impl Move {
                     spaces: Spaces {
                         tri_metric: Some(MetricName::Geodesic),
                         graph: graph(pinned),
+                        planes: pinned.planes.unwrap_or(true),
                         ..from.spaces.clone()
                     },
                     ..from.clone()
@@ -213,6 +214,7 @@ fn one_surface(first: &Parameters, pinned: &Pinned, model: ModelName) -> Option<
         spaces: Spaces {
             metric: MetricName::Geodesic,
             graph: graph(pinned),
+            planes: pinned.planes.unwrap_or(true),
             ..first.spaces.clone()
         },
         ..first.clone()

@@ -44,6 +44,8 @@ pub struct Pinned {
     pub graph: Option<EdgeRule>,
     /// [`Spaces::sheets`].
     pub sheets: Option<bool>,
+    /// [`Spaces::planes`].
+    pub planes: Option<bool>,
     /// [`Spaces::lift`].
     pub lift: Option<f64>,
     /// [`Spaces::neighborhoods`].
@@ -136,6 +138,7 @@ impl Pinned {
                 tri_metric: self.tri_metric,
                 graph: self.graph.unwrap_or(spaces.graph),
                 sheets: self.sheets.unwrap_or(spaces.sheets),
+                planes: self.planes.unwrap_or(spaces.planes),
                 lift: self.lift,
                 neighborhoods: self.neighborhoods.unwrap_or(spaces.neighborhoods),
                 wide_charts: spaces.wide_charts,

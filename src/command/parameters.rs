@@ -206,6 +206,7 @@ impl ParameterArguments {
             tri_metric: self.spaces.tri_metric,
             graph: self.spaces.graph.rule(),
             sheets: self.spaces.graph.graph_sheets.then_some(true),
+            planes: self.spaces.graph.tri_planes.then_some(true),
             lift: self.spaces.graph.lift,
             neighborhoods: self.spaces.neighborhoods,
             prepare: self.prepare,

@@ -72,6 +72,9 @@ fn flags(pinned: &Pinned, chosen: &Parameters) -> Vec<String> {
     if pinned.sheets.is_none() && spaces.sheets {
         out.push("--graph-sheets".into());
     }
+    if pinned.planes.is_none() && spaces.planes {
+        out.push("--tri-planes".into());
+    }
     if pinned.surface.is_none() && chosen.surface {
         out.push("--surface".into());
     }

@@ -20,6 +20,10 @@ pub struct GraphArguments {
     #[arg(long, hide_short_help = true)]
     pub graph_sheets: bool,
 
+    /// Take lengths in geodesic charts from the tangent planes at both ends where the surface is smooth: paths are some percent too long
+    #[arg(long, hide_short_help = true)]
+    pub tri_planes: bool,
+
     /// How far apart the lifted metric holds two sheets that cross at a right angle, unit of the data
     /// [default: 2 eps]
     #[arg(long, hide_short_help = true, value_name = "L", value_parser = positive)]
@@ -42,6 +46,7 @@ impl GraphArguments {
         Spaces {
             graph: self.rule().unwrap_or(usual.graph),
             sheets: self.graph_sheets,
+            planes: self.tri_planes,
             lift: self.lift,
             ..usual
         }
@@ -92,6 +97,7 @@ impl SpaceArguments {
             ("--graph-eps", graph.graph_eps.is_some(), along),
             ("--graph-k", graph.graph_k.is_some(), along),
             ("--graph-sheets", graph.graph_sheets, &along[..1]),
+            ("--tri-planes", graph.tri_planes, &along[..1]),
             ("--lift", graph.lift.is_some(), &[MetricName::Lifted]),
         ];
         let idle = given

@@ -12,7 +12,7 @@ pub enum ChartSpace<'a, S: Scalar> {
     /// A metric on the rows of the input.
     Metric(Space<'a, S>),
     /// The same, where that are lengths of paths along the surface: what they are too long by is taken away where the tangent planes
-    /// tell ([`TangentField::length`]). How far a chart reaches is asked of the metric alone.
+    /// tell ([`TangentField::length`]), and elsewhere what they usually are. How far a chart reaches is asked of the metric alone.
     Along(Space<'a, S>, &'a TangentField),
 }
 

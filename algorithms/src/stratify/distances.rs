@@ -81,12 +81,29 @@ pub(super) fn lengths<S: Scalar>(
         audit::distance(metric, p, q)?;
     }
     if let Some(planes) = planes {
-        for (length, &(a, b)) in lengths.iter_mut().zip(pairs) {
-            let [p, q] = [a, b].map(|k| rows[k].index());
-            *length = S::of(planes.length(p, q, length.as_f64()));
-        }
+        straighten(planes, rows, pairs, &mut lengths);
     }
     Ok(lengths)
+}
+
+/// Takes away what paths are too long by, where the tangent planes tell; from the others what they are usually too long by, so that the two
+/// kinds go together in one chart.
+fn straighten<S: Scalar>(
+    planes: &TangentField,
+    rows: &Table<Landmark, Row>,
+    pairs: &[(Landmark, Landmark)],
+    lengths: &mut [S],
+) {
+    let told: Vec<Option<f64>> = (pairs.iter().zip(&*lengths))
+        .map(|(&(a, b), path)| planes.length(rows[a].index(), rows[b].index(), path.as_f64()))
+        .collect();
+    let ratios = (told.iter().zip(&*lengths)).filter_map(|(t, path)| Some((*t)? / path.as_f64()));
+    let mut ratios: Vec<f64> = ratios.collect();
+    ratios.sort_unstable_by(f64::total_cmp);
+    let usual = ratios.get(ratios.len() / 2).copied().unwrap_or(1.0);
+    for (length, told) in lengths.iter_mut().zip(told) {
+        *length = S::of(told.unwrap_or(usual * length.as_f64()));
+    }
 }
 
 /// Where a landmark was moved onto a curve, adds what the move does to the straight line: a metric knows the
