@@ -56,8 +56,10 @@ pub enum Advice {
         /// The distance from it beyond which the sheets are apart, unit of the data; none where they touch along a curve.
         radius: Option<f64>,
     },
-    /// More points where sheets meet, or a model of one's own.
+    /// More points where sheets meet, where a model knows what meets there; a model of one's own, or the parts as clouds of their own, where none does.
     Model,
+    /// More points where a curve ends, or, where it ends on a boundary or an edge, the curve as a cloud of its own.
+    EndOfCurve,
     /// All models, where not all were asked.
     AllModels,
     /// More attempts.
@@ -90,7 +92,10 @@ impl Advice {
             let count = points.or(report.map(|report| report.points));
             Self::MorePoints((count.unwrap_or(0) as f64 * times.max(LEAST_INCREASE)) as usize)
         };
-        let meets = matches!(first.kind, FaultKind::Unclaimed | FaultKind::Dimension);
+        let meets = matches!(
+            first.kind,
+            FaultKind::Unclaimed | FaultKind::Edge | FaultKind::Dimension
+        );
         // What is so nearly everywhere is no place where sheets meet.
         let local = points.is_none_or(|points| 2 * first.count < points);
         let mut runs = tried.iter().copied().chain(parameters).peekable();
@@ -116,7 +121,8 @@ impl Advice {
                 },
                 None => Self::Model,
             },
-            FaultKind::Unclaimed => Self::Model,
+            FaultKind::Unclaimed | FaultKind::Edge => Self::Model,
+            FaultKind::OpenEnd => Self::EndOfCurve,
             FaultKind::Outliers => Self::LeaveOut {
                 rows: first.worst.iter().filter_map(|spot| spot.row).collect(),
             },
@@ -227,7 +233,12 @@ impl fmt::Display for Advice {
             }
             Self::AllModels => f.write_str("let all models compete (--models auto)"),
             Self::Model => f.write_str(
-                "sample more densely where sheets meet; a pinch point or another kind of singularity needs a model of its own",
+                "sample more densely there if it is an edge between two faces, a corner of such faces, or in the guide's list of singularity models; anything else, as a wall \
+                that ends at an edge, needs a model of its own, or the parts that meet there as clouds of their own",
+            ),
+            Self::EndOfCurve => f.write_str(
+                "sample the end of the curve and what is ahead of it more densely; if it ends on a boundary or an edge no model knows the place: give the curve \
+                as a cloud of its own then",
             ),
             Self::MoreTries => f.write_str("allow more attempts (--tries), or give dl (--dl)"),
         }

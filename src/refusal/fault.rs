@@ -114,11 +114,18 @@ fn judged(trouble: &Trouble, oracle: Option<&EuclideanOracle<f64>>) -> Fault {
         .zip(oracle)
         .and_then(|(row, oracle)| Surroundings::of(oracle, row));
     let (kind, measure) = match (trouble.kind, around.map(|a| (a, a.look()))) {
-        (Some(kind @ (FaultKind::TooFewPoints | FaultKind::Gap | FaultKind::Merged)), _) => {
-            (kind, trouble.measure)
-        }
+        (
+            Some(
+                kind @ (FaultKind::TooFewPoints
+                | FaultKind::OpenEnd
+                | FaultKind::Gap
+                | FaultKind::Merged),
+            ),
+            _,
+        ) => (kind, trouble.measure),
         (_, Some((_, Look::Alone))) => (FaultKind::Outliers, trouble.measure),
         (_, Some((a, Look::Bent))) => (FaultKind::Curvature, Some(a.wanted())),
+        (_, Some((a, Look::Edged))) => (FaultKind::Edge, Some(a.thickness / a.spacing)),
         (_, Some((a, Look::Noisy))) => (FaultKind::Noise, Some(a.thickness / a.spacing)),
         (_, Some((a, Look::Solid))) => (FaultKind::Dimension, Some(a.growth)),
         (_, Some((a, Look::Meeting))) => (FaultKind::Unclaimed, Some(a.thickness / a.spacing)),
@@ -147,7 +154,7 @@ fn touching(trouble: &Trouble, oracle: Option<&EuclideanOracle<f64>>) -> Option<
     let (row, oracle) = trouble.row.zip(oracle)?;
     if matches!(
         trouble.kind,
-        Some(FaultKind::TooFewPoints | FaultKind::Gap | FaultKind::Outliers)
+        Some(FaultKind::TooFewPoints | FaultKind::OpenEnd | FaultKind::Gap | FaultKind::Outliers)
     ) {
         return None;
     }

@@ -9,6 +9,10 @@ use serde::Serialize;
 pub enum FaultKind {
     /// The surface bends more than its points can follow.
     Curvature,
+    /// Flat parts of the surface meet at an angle, or it bends within two spacings of its points.
+    Edge,
+    /// A curve ends before something that it may be joined to.
+    OpenEnd,
     /// Points scatter across the surface.
     Noise,
     /// Points fill a space of more than two dimensions.
@@ -50,6 +54,8 @@ impl FaultKind {
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Curvature => "the surface bends more than its points can follow",
+            Self::Edge => "the mesh fails at an edge, or where the surface bends as sharply",
+            Self::OpenEnd => "a curve ends before something that it may be joined to",
             Self::Noise => "points scatter across the surface",
             Self::Dimension => "the points fill a space of more than two dimensions",
             Self::Unclaimed => "sheets meet in a way that no model claims",

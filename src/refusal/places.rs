@@ -94,7 +94,7 @@ fn of_violation<'a>(
         | ViolationKind::Pinch
         | ViolationKind::TouchingParts => Some(FaultKind::Unclaimed),
         ViolationKind::BridgedGap | ViolationKind::BareStretch => Some(FaultKind::Gap),
-        ViolationKind::UndecidedEnd => Some(FaultKind::TooFewPoints),
+        ViolationKind::UndecidedEnd => Some(FaultKind::OpenEnd),
         ViolationKind::MergedSheets => Some(FaultKind::Merged),
         _ => None,
     };

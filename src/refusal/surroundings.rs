@@ -3,6 +3,7 @@
 use crosscap_algorithms::principal::PrincipalFrame;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::{Neighbor, NeighborhoodOracle, PointCloud};
+use nalgebra::DMatrix;
 
 /// The smaller neighborhood: enough for a plane.
 const FEW: usize = 15;
@@ -21,6 +22,16 @@ const STEADY: f64 = 1.5;
 const BENDING: f64 = 2.7;
 /// A sheet is flat enough for charts when its thickness is at most this share of the radius.
 const FLAT: f64 = 0.08;
+/// Where a quadratic height leaves more than this share of the distances from the plane, and flat sheets are around, what bends is an edge. Of places that looked bent
+/// none did on spheres, tori and saddles; on parabolas and waves whose bend has a radius of 2.4 spacings 0 and 0.15, of 1.7 spacings 0.03 and 0.4, of 1.2 spacings 0.6 and 0.5; at
+/// edges of 60 to 120 degrees, corners of a box and walls 0.62 to 0.79.
+const EDGED: f64 = 0.4;
+/// Least share of the points around that are on flat sheets, at an edge.
+const AROUND: f64 = 0.5;
+/// Every so manieth of the points around is asked for that.
+const STRIDE: usize = 4;
+/// Terms of a quadratic height over a plane.
+const TERMS: usize = 6;
 
 /// How the points lie around a place, at two sizes of a neighborhood.
 ///
@@ -41,6 +52,10 @@ pub struct Surroundings {
     pub radius: f64,
     /// Distance of the nearest point as a share of that of the 15th.
     pub apart: f64,
+    /// What a quadratic height leaves of the thickness of the 60 nearest points, as a share of it.
+    pub left: f64,
+    /// Share of the points around that are on flat sheets, as their own 15 nearest points say.
+    pub flat: f64,
 }
 
 /// What the surroundings of a place look like.
@@ -50,6 +65,8 @@ pub(super) enum Look {
     Flat,
     /// A sheet that bends too much for this density.
     Bent,
+    /// Flat sheets at an angle.
+    Edged,
     /// A sheet across which the points scatter.
     Noisy,
     /// Points that fill a space of more than two dimensions.
@@ -77,6 +94,8 @@ impl Surroundings {
             wide_thickness: thickness(cloud, &near),
             radius,
             apart: near[1].distance / small,
+            left: left_by_quadratic(cloud, &near),
+            flat: flat_share(oracle, &near),
         })
     }
 
@@ -91,6 +110,8 @@ impl Surroundings {
             Look::Solid
         } else if self.thickness > THIN * self.spacing && grown < STEADY {
             Look::Noisy
+        } else if grown > BENDING && self.left > EDGED && self.flat >= AROUND {
+            Look::Edged
         } else if grown > BENDING {
             Look::Bent
         } else {
@@ -109,6 +130,46 @@ impl Surroundings {
 fn thickness(cloud: &PointCloud<f64>, points: &[Neighbor<f64>]) -> f64 {
     let frame = PrincipalFrame::of(cloud, points.iter().map(|x| x.index));
     frame.variances.iter().skip(2).sum::<f64>().sqrt()
+}
+
+/// What the quadratic height of least squares over the best plane of points leaves of their distances from it, as a share of these; 0 where they are in it.
+fn left_by_quadratic(cloud: &PointCloud<f64>, points: &[Neighbor<f64>]) -> f64 {
+    let frame = PrincipalFrame::of(cloud, points.iter().map(|x| x.index));
+    let (count, rank) = (points.len(), frame.rank());
+    let mut all = Vec::with_capacity(count * rank);
+    for point in points {
+        frame.project(cloud.point(point.index), rank, &mut all);
+    }
+    let unit = frame.variances[0].sqrt();
+    if rank < 3 || count <= TERMS || unit <= 0.0 {
+        return 0.0;
+    }
+    let terms = DMatrix::from_fn(count, TERMS, |row, term| {
+        let [a, b] = [0, 1].map(|axis| all[row * rank + axis] / unit);
+        [1.0, a, b, a * a, a * b, b * b][term]
+    });
+    let heights = DMatrix::from_fn(count, rank - 2, |row, k| all[row * rank + 2 + k] / unit);
+    let basis = terms.qr().q();
+    let left = &heights - &basis * (basis.transpose() * &heights);
+    let of = |heights: &DMatrix<f64>, free: usize| heights.norm_squared() / free as f64;
+    let thickness = of(&heights, count);
+    if thickness <= 0.0 {
+        return 0.0;
+    }
+    (of(&left, count - TERMS) / thickness).sqrt()
+}
+
+/// Share of points that are on flat sheets: their 15 nearest points are.
+fn flat_share(oracle: &EuclideanOracle<f64>, points: &[Neighbor<f64>]) -> f64 {
+    let mut near: Vec<Neighbor<f64>> = Vec::new();
+    let mut flat = |point: &Neighbor<f64>| {
+        oracle.nearest(point.index, FEW + 1, &mut near);
+        let radius = near.last().map_or(0.0, |x| x.distance);
+        thickness(oracle.cloud(), &near) <= FLAT * radius
+    };
+    let asked = points.iter().step_by(STRIDE);
+    let of = asked.len();
+    asked.filter(|point| flat(point)).count() as f64 / of.max(1) as f64
 }
 
 #[cfg(test)]
@@ -150,5 +211,49 @@ mod tests {
             [x, y, 2.5 * x * x]
         };
         assert_eq!(looks(bent, 800), Look::Bent);
+    }
+
+    /// How many points within `reach` of the plane x = 0 look bent, and how many as at an edge.
+    fn bent_and_edged(
+        row: impl Fn(&mut Random) -> [f64; 3],
+        count: usize,
+        reach: f64,
+    ) -> [usize; 2] {
+        let random = &mut Random::new(5);
+        let rows: Vec<f64> = (0..count).flat_map(|_| row(random)).collect();
+        let oracle = EuclideanOracle::new(PointCloud::new(3, rows).unwrap()).unwrap();
+        let inside = |&row: &usize| {
+            let place = oracle.cloud().point(row);
+            place[0].abs() < reach && place[1].abs() < 0.8
+        };
+        let looks = (0..count)
+            .filter(inside)
+            .filter_map(|row| Surroundings::of(&oracle, row));
+        let all: Vec<Look> = looks.map(|a| a.look()).collect();
+        [Look::Bent, Look::Edged].map(|look| all.iter().filter(|other| **other == look).count())
+    }
+
+    #[test]
+    fn an_edge_is_no_bend_that_more_points_resolve() {
+        let edge = |r: &mut Random| {
+            let [x, y] = at(r);
+            [x, y, x.abs()]
+        };
+        let wall = |r: &mut Random| match at(r) {
+            [x, y] if x < 0.3 => [x / 0.65 - 0.3, y, 0.0],
+            [x, y] => [0.0, y, x],
+        };
+        for [bent, edged] in [
+            bent_and_edged(edge, 3000, 0.15),
+            bent_and_edged(wall, 3000, 0.15),
+        ] {
+            assert!(edged > 40 && edged > bent, "{edged} {bent}");
+        }
+        let wave = |r: &mut Random| {
+            let [x, y] = at(r);
+            [x, y, 0.3 * (4.0 * x).sin()]
+        };
+        let [bent, edged] = bent_and_edged(wave, 1600, 1.0);
+        assert!(bent > 40 && 4 * edged < bent, "{edged} {bent}");
     }
 }

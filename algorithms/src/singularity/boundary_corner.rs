@@ -320,6 +320,42 @@ mod tests {
         Instance::new(3, RADIUS, &points).principal()
     }
 
+    /// A tip of 53 degrees at the origin with a gap along one of its arms, in a ball about a point beside the gap; about their mean, with the tip.
+    fn gap_beside_a_tip(draw: &mut Draw) -> (Vec<f64>, [f64; 2]) {
+        let (sin, cos) = (0.5 * 53.0_f64).to_radians().sin_cos();
+        let along_and_in = |p: [f64; 2]| [cos * p[0] + sin * p[1], sin * p[0] - cos * p[1]];
+        let from = [0.64 * cos + 0.1 * sin, 0.64 * sin - 0.1 * cos];
+        let mut places = vec![from];
+        while places.len() < draw.points {
+            let offset = draw.disc();
+            let place = [0, 1].map(|k| from[k] + offset[k]);
+            let [along, inward] = along_and_in(place);
+            let in_gap = inward < 0.1 * (1.0 - ((along - 0.49) / 0.16).powi(2));
+            if place[1].abs() * cos < place[0] * sin && !in_gap {
+                places.push(place);
+            }
+        }
+        let count = places.len() as f64;
+        let mean = [0, 1].map(|k| places.iter().map(|p| p[k]).sum::<f64>() / count);
+        let centered = (places.iter()).flat_map(|p| [p[0] - mean[0], p[1] - mean[1], 0.0]);
+        (centered.collect(), mean.map(|m| -m))
+    }
+
+    #[test]
+    fn a_gap_beside_a_tip_is_not_taken_for_the_tip() {
+        let mut found = 0;
+        for seed in 0..40 {
+            let (places, tip) = gap_beside_a_tip(&mut Draw::new(seed, 200));
+            if let Ok(fit) = decompose(&places) {
+                let off = (0..2).map(|k| (fit.points[0][k] - tip[k]).powi(2));
+                let off = off.sum::<f64>().sqrt();
+                assert!(off < 0.3, "{seed}: {off}");
+                found += 1;
+            }
+        }
+        assert!(found > 30, "{found}");
+    }
+
     #[test]
     fn a_point_that_lies_off_a_straight_boundary_is_no_corner() {
         let spike = plate(|p| p[0] > 0.25 || p[0].hypot(p[1]) < 0.01);

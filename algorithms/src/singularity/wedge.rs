@@ -9,6 +9,11 @@ use std::f64::consts::PI;
 
 /// Times that a curve is fitted, each time upright over its own middle.
 const ROUNDS: usize = 4;
+/// Turns from the direction outward that the search for a kink begins with, in radians. From one direction alone it stays where it begins: in a ball about a
+/// place of one arm, with a chance gap there and the tip of the corner 0.6 radii away, the gap was taken for the corner.
+const BEGINNINGS: [f64; 3] = [0.0, -0.7, 0.7];
+/// A turn of the axes from one round to the next, in radians, below which nothing more is gained.
+const SETTLED: f64 = 0.01;
 /// Bounds of the height of a smooth curve over the center, and of its slope there.
 const WIDE: [f64; 2] = [2.0, 4.0];
 
@@ -44,20 +49,38 @@ impl Laid<'_> {
         self.points.iter().map(|&p| axes.plane(p)).collect()
     }
 
-    /// The kink that leaves most beyond it, each time over the line that halved the angle of the last.
+    /// The kink that leaves most beyond it.
     pub(super) fn wedge(&self) -> Option<Wedge> {
-        let mut out = self.outward()?;
+        let out = self.outward()?;
+        let begun = BEGINNINGS.iter().filter_map(|&turn| {
+            let (sin, cos) = libm::sincos(turn);
+            self.settled([cos * out[0] - sin * out[1], sin * out[0] + cos * out[1]])
+        });
+        begun.reduce(|best, next| match next.beyond > best.beyond {
+            true => next,
+            false => best,
+        })
+    }
+
+    /// The same from one direction on, each time over the line that halved the angle of the last.
+    fn settled(&self, mut out: [f64; 2]) -> Option<Wedge> {
         let mut best: Option<Wedge> = None;
         for _ in 0..ROUNDS {
             let axes = Axes::new([0.0; 2], out);
-            let kink = Kink::above(&self.over(&axes), self.tuning.reach, self.tuning.arm_bend)?;
+            let kink = Kink::above(&self.over(&axes), self.tuning.reach, self.tuning.arm_bend);
+            // Over a direction that is too far off no curve is above the points.
+            let Some(kink) = kink else { break };
             let [before, behind] = kink.slopes();
             // Upright over the line that halves the angle.
-            let (sin, cos) = ((before.atan() + behind.atan()) / 2.0).sin_cos();
+            let turn = (before.atan() + behind.atan()) / 2.0;
+            let (sin, cos) = turn.sin_cos();
             out = [0, 1].map(|i| cos * axes.out[i] - sin * axes.along[i]);
             let beyond = area_beyond(|t| kink.at(t), 1.0);
             if best.as_ref().is_none_or(|b| beyond > b.beyond) {
                 best = Some(Wedge { axes, kink, beyond });
+            }
+            if turn.abs() < SETTLED {
+                break;
             }
         }
         best

@@ -37,6 +37,7 @@ mod motion;
 mod nearest;
 mod paper;
 mod piece;
+mod pierced;
 mod pinched;
 mod plates;
 mod projective;

@@ -4,6 +4,7 @@ use super::books::{DISCS, PAGES, book, plate_on_plate};
 use super::cayley::cayley;
 use super::curves::{circle, curve, path, straight};
 use super::flat::{axes, square};
+use super::pierced::cube_with_hole;
 use super::surface::SampleSurface;
 use super::truth::{DISC, PROJECTIVE, SEGMENT, SPHERE, crossing, plain};
 use super::{
@@ -167,7 +168,29 @@ fn pinched() -> Vec<SampleSurface> {
         .also(&["crosscap"])
         .singular(move |m| vec![straight(CurveKind::Double, ends[0], ends[1], m)])
         .at(PointKind::Pinch, ends.map(Vec::from)),
+        umbrella_with_handle(),
     ]
+}
+
+/// All real zeros of x^2 = y^2 z near the pinch point: beyond it the double line has no sheet.
+fn umbrella_with_handle() -> SampleSurface {
+    SampleSurface::new(
+        "umbrella_with_handle",
+        "Whitney's umbrella with its handle, the segment that continues the double segment beyond the pinch point",
+        vec![
+            Box::new(Umbrella),
+            Box::new(Segment::new("handle", [vec![0.0; 3], axis(2, -1.0).into()])),
+        ],
+        Truth {
+            boundary_curves: 1,
+            pinch_points: 1,
+            ..crossing([1, 0, 0], &[DISC, SEGMENT], 1)
+        },
+        10_000,
+    )
+    .singular(|m| vec![straight(CurveKind::Double, [0.0; 3], axis(2, 1.0), m)])
+    .at(PointKind::Pinch, [vec![0.0; 3]])
+    .at(PointKind::CurveEnd, [axis(2, 1.0).into()])
 }
 
 /// A place on the `k`-th coordinate axis.
@@ -338,6 +361,7 @@ pub(super) fn singular_surfaces() -> Vec<SampleSurface> {
     ]);
     all.extend(boxes());
     all.extend(cones());
+    all.push(cube_with_hole());
     all.push(cayley());
     all
 }

@@ -234,13 +234,11 @@ fn singular_curves_lie_on_both_sheets() {
                 .iter()
                 .map(|p| p.distances(&curve.points))
                 .collect();
+            // A single sheet may meet itself, whatever curves there are beside it.
+            let several = s.pieces().iter().filter(|p| p.dimension() == 2).count() > 1;
             for k in 0..curve.points.len() {
                 let touched = distances.iter().filter(|d| d[k] < 1e-9).count();
-                assert!(
-                    touched >= if s.pieces().len() > 1 { sheets } else { 1 },
-                    "{}",
-                    s.name()
-                );
+                assert!(touched >= if several { sheets } else { 1 }, "{}", s.name());
             }
         }
     }
@@ -436,6 +434,7 @@ fn enclosed_regions_are_as_many_as_the_second_betti_number() {
         ("roman", 200_000, 56),
         ("cross_cap", 200_000, 56),
         ("cone", 100_000, 40),
+        ("cube_with_hole", 200_000, 48),
         ("boy_surface", 600_000, 72),
         ("double_torus", 200_000, 56),
     ] {

@@ -28,7 +28,7 @@ class Reason:
     Attributes
     ----------
     kind : str
-        What is wrong: of a refusal ``"curvature"``, ``"noise"``, ``"dimension"``, ``"unclaimed"``,
+        What is wrong: of a refusal ``"curvature"``, ``"edge"``, ``"open-end"``, ``"noise"``, ``"dimension"``, ``"unclaimed"``,
         ``"touching"``, ``"too-few-points"``, ``"outliers"``, ``"two-readings"``, ``"ends"``, ``"precision"`` or ``"unresolved"``;
         of a violation such as ``"undeclared_boundary"``.
     text : str
