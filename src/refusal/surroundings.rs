@@ -28,7 +28,7 @@ const FLAT: f64 = 0.08;
 const EDGED: f64 = 0.4;
 /// Least share of the points around that are on flat sheets, at an edge.
 const AROUND: f64 = 0.5;
-/// Every so manieth of the points around is asked for that.
+/// One of so many of the points around is asked for that.
 const STRIDE: usize = 4;
 /// Terms of a quadratic height over a plane.
 const TERMS: usize = 6;
