@@ -127,8 +127,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     laws::estimator(&Settings::default(), &robust)?;
     println!("{} obeys the laws of DimensionEstimator", robust.name());
+    one_neighborhood()?;
+    a_torus()
+}
 
-    // A flat piece of 200 points, and 8 outliers above it.
+/// A flat piece of 200 points, and 8 outliers above it.
+fn one_neighborhood() -> Result<(), Box<dyn std::error::Error>> {
     let mut coordinates = Vec::new();
     for k in 0..200 {
         coordinates.extend([
@@ -163,9 +167,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             found.dimension, found.spectrum
         );
     }
+    Ok(())
+}
 
-    // A torus on which every hundredth point is a bad measurement. Landmarks are chosen among the others: an estimator
-    // says what a neighborhood is, and leaves the bad points in it.
+/// A torus on which every hundredth point is a bad measurement. Landmarks are chosen among the others: an estimator
+/// says what a neighborhood is, and leaves the bad points in it.
+fn a_torus() -> Result<(), Box<dyn std::error::Error>> {
     use crosscap::prelude::*;
     let sample = SampleSurface::find("torus")?.sample(&Sampling::new(6000, 7))?;
     let good = sample.points;

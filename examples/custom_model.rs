@@ -69,6 +69,33 @@ fn alternate(points: &[Vector3<f64>], start: [Vector3<f64>; 2]) -> (f64, [Plane;
     (sum, planes)
 }
 
+/// The nearest place on the line in which the planes meet; none where they are nearly parallel.
+fn onto_line([p, q]: &[Plane; 2], x: &Vector3<f64>) -> Option<Vector3<f64>> {
+    let cosine = p.normal.dot(&q.normal);
+    let square = 1.0 - cosine * cosine;
+    if square < 0.02 {
+        return None;
+    }
+    let (f, g) = (p.height(x), q.height(x));
+    Some(x - p.normal * ((f - cosine * g) / square) - q.normal * ((g - cosine * f) / square))
+}
+
+impl AlternatingPlanes {
+    /// Cells in cyclic order around the line, 1 to 4; 0 is the line.
+    fn label(&self, planes: &[Plane; 2], x: &Vector3<f64>) -> u8 {
+        let own = nearer(planes, x);
+        let other = planes[1 - own].height(x);
+        let farther = planes[own].height(x).abs().max(other.abs());
+        match (farther < self.ep, own, other >= 0.0) {
+            (true, _, _) => 0,
+            (_, 0, true) => 1,
+            (_, 1, true) => 2,
+            (_, 0, false) => 3,
+            _ => 4,
+        }
+    }
+}
+
 impl SingularityModel for AlternatingPlanes {
     fn local_dimension(&self) -> usize {
         3
@@ -106,25 +133,7 @@ impl SingularityModel for AlternatingPlanes {
                 limit: self.dp,
             });
         }
-        // Cells in cyclic order around the line, 1 to 4; 0 is the line.
-        let labels: Vec<u8> = all
-            .iter()
-            .map(|x| {
-                let own = nearer(&planes, x);
-                let other = planes[1 - own].height(x);
-                match (
-                    planes[own].height(x).abs().max(other.abs()) < self.ep,
-                    own,
-                    other >= 0.0,
-                ) {
-                    (true, _, _) => 0,
-                    (_, 0, true) => 1,
-                    (_, 1, true) => 2,
-                    (_, 0, false) => 3,
-                    _ => 4,
-                }
-            })
-            .collect();
+        let labels: Vec<u8> = all.iter().map(|x| self.label(&planes, x)).collect();
         for stratum in 1..5 {
             let found = labels[..local.fitted]
                 .iter()
@@ -137,18 +146,8 @@ impl SingularityModel for AlternatingPlanes {
                 });
             }
         }
-        // The nearest place on the line in which the planes meet.
         let center = all[local.center];
-        let [p, q] = planes;
-        let cosine = p.normal.dot(&q.normal);
-        let square = 1.0 - cosine * cosine;
-        if square < 0.02 {
-            return Err(Rejection::NoRealSolution);
-        }
-        let (f, g) = (p.height(&center), q.height(&center));
-        let moved = center
-            - p.normal * ((f - cosine * g) / square)
-            - q.normal * ((g - cosine * f) / square);
+        let moved = onto_line(&planes, &center).ok_or(Rejection::NoRealSolution)?;
         Ok(Decomposition {
             strata: [1, 2, 2, 2, 2]
                 .map(|dimension| Stratum { dimension })

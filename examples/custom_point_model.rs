@@ -84,6 +84,20 @@ impl Cone {
     }
 }
 
+impl DoubleCone {
+    /// 0 for the apex, 1 and 2 for the halves.
+    fn label(&self, cone: &Cone, p: &Vector3<f64>) -> u8 {
+        let y = p - cone.apex;
+        if y.norm() < self.ep {
+            0
+        } else if cone.axis.dot(&y) > 0.0 {
+            1
+        } else {
+            2
+        }
+    }
+}
+
 impl SingularityModel for DoubleCone {
     fn local_dimension(&self) -> usize {
         3
@@ -112,19 +126,7 @@ impl SingularityModel for DoubleCone {
                 limit: self.dp,
             });
         }
-        let labels: Vec<u8> = points
-            .iter()
-            .map(|p| {
-                let y = p - cone.apex;
-                if y.norm() < self.ep {
-                    0
-                } else if cone.axis.dot(&y) > 0.0 {
-                    1
-                } else {
-                    2
-                }
-            })
-            .collect();
+        let labels: Vec<u8> = points.iter().map(|p| self.label(&cone, p)).collect();
         for cell in [1, 2] {
             let found = labels[..local.fitted]
                 .iter()

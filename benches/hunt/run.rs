@@ -104,6 +104,46 @@ struct Made {
     why: String,
 }
 
+/// What the truth says about it.
+struct Told {
+    end: End,
+    /// The landmark separation of the mesh beside the feature.
+    coarse: f64,
+    betti: Option<[usize; 3]>,
+    distance: Option<Distance>,
+}
+
+impl Made {
+    fn told(
+        &self,
+        feature: &Feature,
+        cloud: &FeatureCloud,
+        drawing: &Drawing,
+    ) -> Result<Told, Error> {
+        let mut told = Told {
+            end: End::Refused,
+            coarse: f64::NAN,
+            betti: None,
+            distance: None,
+        };
+        match &self.outcome {
+            Err(Error::Interrupted) => told.end = End::Late,
+            Err(_) => {}
+            Ok(outcome) => {
+                told.coarse = outcome.report.parameters.dl / cloud.size;
+                told.betti = Some(outcome.homology.betti_rational);
+                if self.verified {
+                    let found = truth::distance(feature, cloud, drawing, outcome)?;
+                    let right = told.betti == Some(feature.betti) && found.is_near();
+                    told.end = if right { End::Right } else { End::Wrong };
+                    told.distance = Some(found);
+                }
+            }
+        }
+        Ok(told)
+    }
+}
+
 impl Run {
     /// Makes run `number`.
     pub fn made(
@@ -122,25 +162,7 @@ impl Run {
             reconstruct(&cloud, &drawing, rule, interrupt, &mut random)
         })?;
         let seconds = since.elapsed().as_secs_f64();
-        let (mut betti, mut distance, mut coarse) = (None, None, f64::NAN);
-        let mut end = End::Refused;
-        if let Ok(outcome) = &made.outcome {
-            let dl = outcome.report.parameters.dl;
-            coarse = dl / cloud.size;
-            betti = Some(outcome.homology.betti_rational);
-            if made.verified {
-                let found = truth::distance(&feature, &cloud, &drawing, outcome)?;
-                let right = betti == Some(feature.betti) && found.is_near();
-                end = if right { End::Right } else { End::Wrong };
-                distance = Some(found);
-            }
-        } else if made
-            .outcome
-            .as_ref()
-            .is_err_and(|e| *e == Error::Interrupted)
-        {
-            end = End::Late;
-        }
+        let told = made.told(&feature, &cloud, &drawing)?;
         let mut words = made.why;
         if let Some(folder) = &settings.keep {
             let name = format!("{}_{}_{number}.npy", feature.name, settings.seed);
@@ -159,15 +181,15 @@ impl Run {
             seed: settings.seed,
             feature,
             rule,
-            end,
+            end: told.end,
             size: cloud.resolved,
-            coarse,
+            coarse: told.coarse,
             seconds,
             ratio: drawing.ratio,
             noise: drawing.noise,
             points: cloud.points.len(),
-            betti,
-            distance,
+            betti: told.betti,
+            distance: told.distance,
             words,
         })
     }
@@ -265,30 +287,7 @@ fn reconstruct(
 ) -> Result<Made, Error> {
     let seed = random.below(1000) as u64;
     let (dl, eps) = (random.uniform(), random.uniform());
-    let mut pinned = Pinned {
-        seed: Some(seed),
-        threads: Some(1),
-        ..Pinned::default()
-    };
-    let mut arguments = format!(" --seed {seed} --threads 1");
-    if rule != Rule::Auto {
-        let (dl, eps) = if rule == Rule::Density {
-            let eps = sixtieth(&cloud.points);
-            (eps / 2.0, eps)
-        } else {
-            let [low, high] = SEPARATION;
-            let dl = cloud.spacing * low * (high / low).powf(dl);
-            (dl, dl * (RADIUS[0] + (RADIUS[1] - RADIUS[0]) * eps))
-        };
-        arguments += &format!(" --eps {eps} --dl {dl} --models auto");
-        pinned.dl = Some(dl);
-        pinned.eps = Some(eps);
-        pinned.models = Some(ModelName::AUTO.to_vec());
-        if drawing.noise > 0.0 {
-            arguments += " --prepare on";
-            pinned.prepare = Some(true);
-        }
-    }
+    let (pinned, arguments) = asked(cloud, drawing, rule, seed, [dl, eps]);
     let mut make = |parameters| Ok(Pipeline::new(parameters)?.interrupt(interrupt.clone()));
     let search = match Auto::new(pinned).search(Input::Points(&cloud.points), &mut make) {
         Ok(search) => search,
@@ -317,6 +316,42 @@ fn reconstruct(
         arguments,
         why,
     })
+}
+
+/// What a rule asks for, and the arguments that say so; `chance` are two numbers from 0 to 1, for dl and eps.
+fn asked(
+    cloud: &FeatureCloud,
+    drawing: &Drawing,
+    rule: Rule,
+    seed: u64,
+    chance: [f64; 2],
+) -> (Pinned, String) {
+    let mut pinned = Pinned {
+        seed: Some(seed),
+        threads: Some(1),
+        ..Pinned::default()
+    };
+    let mut arguments = format!(" --seed {seed} --threads 1");
+    if rule == Rule::Auto {
+        return (pinned, arguments);
+    }
+    let (dl, eps) = if rule == Rule::Density {
+        let eps = sixtieth(&cloud.points);
+        (eps / 2.0, eps)
+    } else {
+        let [low, high] = SEPARATION;
+        let dl = cloud.spacing * low * (high / low).powf(chance[0]);
+        (dl, dl * (RADIUS[0] + (RADIUS[1] - RADIUS[0]) * chance[1]))
+    };
+    arguments += &format!(" --eps {eps} --dl {dl} --models auto");
+    pinned.dl = Some(dl);
+    pinned.eps = Some(eps);
+    pinned.models = Some(ModelName::AUTO.to_vec());
+    if drawing.noise > 0.0 {
+        arguments += " --prepare on";
+        pinned.prepare = Some(true);
+    }
+    (pinned, arguments)
 }
 
 /// The 99 percent quantile of the distance to the 60th neighbor, over 400 of the points.

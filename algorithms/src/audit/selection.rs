@@ -39,8 +39,6 @@ pub(crate) fn selection<S: Scalar>(
     } = *question;
     let mut landmark = chosen_once(oracle.len(), plugin, candidates, chosen)?;
     taken.iter().for_each(|&i| landmark[i] = true);
-    // Taken points may be closer to each other: they are others' choice.
-    let rounding = separation * slack::<S>();
     let covered: Vec<AtomicBool> = (0..oracle.len()).map(|_| AtomicBool::new(false)).collect();
     let all: Vec<usize> = chosen.iter().chain(taken).copied().collect();
     let close = execute::map_blocks(
@@ -49,23 +47,13 @@ pub(crate) fn selection<S: Scalar>(
         all.len(),
         || (Vec::new(), Vec::new()),
         |(indices, near), k| {
-            let i = all[k];
-            let reach = S::of(separation + rounding);
-            oracle.indices_within(i, reach, indices);
-            let mut others = false;
-            for &x in indices.iter() {
-                covered[x as usize].store(true, Ordering::Relaxed);
-                others |= landmark[x as usize] && x as usize != i;
+            let others = cover(oracle, all[k], separation, &landmark, &covered, indices);
+            // Taken points may be closer to each other: they are others' choice.
+            if others && k < chosen.len() {
+                too_close(oracle, all[k], separation, &landmark, near)
+            } else {
+                None
             }
-            if !others || k >= chosen.len() {
-                return None;
-            }
-            oracle.within(i, reach, near);
-            let close = |x: &&Neighbor<S>| {
-                let distance = x.distance.as_f64();
-                distance < separation - rounding && x.index != i && landmark[x.index]
-            };
-            near.iter().find(close).copied()
         },
     );
     let mut close = all.iter().zip(close);
@@ -88,6 +76,47 @@ pub(crate) fn selection<S: Scalar>(
             format!("no landmark within {separation}"),
         ),
     }
+}
+
+/// What rounding may add to a separation, or take from it.
+fn rounding<S: Scalar>(separation: f64) -> f64 {
+    separation * slack::<S>()
+}
+
+/// Marks the points that a landmark covers; whether another landmark is among them. `indices` is scratch.
+fn cover<S: Scalar>(
+    oracle: &dyn NeighborhoodOracle<Scalar = S>,
+    i: usize,
+    separation: f64,
+    landmark: &[bool],
+    covered: &[AtomicBool],
+    indices: &mut Vec<u32>,
+) -> bool {
+    let reach = separation + rounding::<S>(separation);
+    oracle.indices_within(i, S::of(reach), indices);
+    let mut others = false;
+    for &x in indices.iter() {
+        covered[x as usize].store(true, Ordering::Relaxed);
+        others |= landmark[x as usize] && x as usize != i;
+    }
+    others
+}
+
+/// Another landmark that is closer than the separation by more than rounding. `near` is scratch.
+fn too_close<S: Scalar>(
+    oracle: &dyn NeighborhoodOracle<Scalar = S>,
+    i: usize,
+    separation: f64,
+    landmark: &[bool],
+    near: &mut Vec<Neighbor<S>>,
+) -> Option<Neighbor<S>> {
+    let rounding = rounding::<S>(separation);
+    oracle.within(i, S::of(separation + rounding), near);
+    let close = |x: &&Neighbor<S>| {
+        let distance = x.distance.as_f64();
+        distance < separation - rounding && x.index != i && landmark[x.index]
+    };
+    near.iter().find(close).copied()
 }
 
 /// Which of so many points are chosen, each a candidate and once.

@@ -1,5 +1,6 @@
 use super::*;
 use crate::execute::Serial;
+use crosscap_core::squared_distance;
 use proptest::prelude::*;
 
 proptest! {

@@ -54,21 +54,7 @@ impl Incidence {
         }
         starts.push(triangles.len() as u32);
 
-        let mut vertex_starts = vec![0_u32; complex.vertices + 1];
-        for &v in complex.triangles.iter().flatten() {
-            vertex_starts[v as usize + 1] += 1;
-        }
-        for v in 0..complex.vertices {
-            vertex_starts[v + 1] += vertex_starts[v];
-        }
-        let mut fill = vertex_starts.clone();
-        let mut vertex_triangles = vec![0; 3 * complex.triangles.len()];
-        for (t, corners) in complex.triangles.iter().enumerate() {
-            for &v in corners {
-                vertex_triangles[fill[v as usize] as usize] = t as u32;
-                fill[v as usize] += 1;
-            }
-        }
+        let (vertex_starts, vertex_triangles) = by_vertex(complex);
         Self {
             edges,
             cells,
@@ -111,4 +97,24 @@ impl Incidence {
         &self.vertex_triangles
             [self.vertex_starts[vertex] as usize..self.vertex_starts[vertex + 1] as usize]
     }
+}
+
+/// The triangles at every vertex in increasing order, one vertex after the other, and where each vertex begins.
+fn by_vertex(complex: &Complex) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0_u32; complex.vertices + 1];
+    for &v in complex.triangles.iter().flatten() {
+        starts[v as usize + 1] += 1;
+    }
+    for v in 0..complex.vertices {
+        starts[v + 1] += starts[v];
+    }
+    let mut fill = starts.clone();
+    let mut triangles = vec![0; 3 * complex.triangles.len()];
+    for (t, corners) in complex.triangles.iter().enumerate() {
+        for &v in corners {
+            triangles[fill[v as usize] as usize] = t as u32;
+            fill[v as usize] += 1;
+        }
+    }
+    (starts, triangles)
 }

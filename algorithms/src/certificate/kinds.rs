@@ -186,7 +186,7 @@ impl ViolationKind {
         }
     }
 
-    /// Which parameter to change.
+    /// Which parameter to change. Longer than a screen, as it is one table.
     pub fn advice(self) -> &'static str {
         use ViolationKind::*;
         match self {

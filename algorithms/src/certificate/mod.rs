@@ -77,8 +77,11 @@ use crosscap_core::{Mesh, PointCloud};
 use faithful::Search;
 use faithful::footprints::Footprints;
 use faithful::ground::Ground;
+use frame::Frame;
+use incidence::Incidence;
 use limits::{exceeds, within};
 use places::coordinates;
+use tree::Tree;
 
 /// Asks a mesh everything that can be decided without knowing the true surface.
 ///
@@ -108,9 +111,9 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
     if !certificate.indices.usable {
         return certificate;
     }
-    let incidence = incidence::Incidence::new(&mesh.complex);
+    let incidence = Incidence::new(&mesh.complex);
     let bare = incidence.bare_edges();
-    let frame = frame::Frame::new(&mesh.vertices, options.points);
+    let frame = Frame::new(&mesh.vertices, options.points);
     let quality = quality::check(mesh, &incidence, &options.limits);
     certificate.links = Some(links::check(
         mesh,
@@ -132,18 +135,60 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
     } else {
         geometry::tree(mesh, &frame, &bare)
     };
+    let parts = Parts {
+        mesh,
+        incidence: &incidence,
+        bare: &bare,
+        frame: &frame,
+        tree: &all,
+    };
+    ask_points(
+        &mut certificate,
+        &parts,
+        quality.edge_length.median,
+        options,
+    );
+    certificate.quality = Some(quality);
+    certificate
+}
+
+/// A mesh as the levels that have the points look at it.
+struct Parts<'a> {
+    mesh: &'a Mesh,
+    incidence: &'a Incidence,
+    /// Edges without triangles.
+    bare: &'a [[u32; 2]],
+    frame: &'a Frame,
+    /// Of triangles and of these edges.
+    tree: &'a Tree,
+}
+
+/// The levels to which points have something to say, where there are any: edges (is a boundary an opening of the points?), cover, faithful.
+fn ask_points(
+    certificate: &mut Certificate,
+    parts: &Parts<'_>,
+    median_edge: f64,
+    options: &CertificateOptions<'_>,
+) {
+    let Parts {
+        mesh,
+        incidence,
+        bare,
+        frame,
+        tree,
+    } = *parts;
     let points = options.points.filter(|p| !p.is_empty());
     let of = (options.excerpt).map_or(points.map_or(0, PointCloud::len), |part| part.of);
     let feet = points.map(|points| {
         let rows = looked_at(of, options).into_iter();
-        Footprints::new(mesh, &incidence, &frame, &all, &bare, points, rows)
+        Footprints::new(mesh, incidence, frame, tree, bare, points, rows)
     });
-    let ground = feet.as_ref().map(|f| Ground::new(mesh, &incidence, f));
+    let ground = feet.as_ref().map(|f| Ground::new(mesh, incidence, f));
     let search = feet
         .as_ref()
         .zip(ground.as_ref())
         .zip(points)
-        .map(|((feet, ground), points)| Search::new(mesh, &incidence, feet, ground, points, of));
+        .map(|((feet, ground), points)| Search::new(mesh, incidence, feet, ground, points, of));
     let opening = options
         .faithful
         .then_some(())
@@ -156,7 +201,7 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
     };
     certificate.edges = Some(edges::check(
         mesh,
-        &incidence,
+        incidence,
         options.closed,
         options.limits.shortest_boundary,
         &is_opening,
@@ -164,15 +209,13 @@ pub fn certify(mesh: &Mesh, options: &CertificateOptions<'_>) -> Certificate {
     certificate.cover = Some(cover::check(
         mesh,
         search.as_ref(),
-        &bare,
-        quality.edge_length.median,
+        bare,
+        median_edge,
         options,
     ));
     certificate.faithful = search
         .filter(|_| options.faithful)
         .map(|search| faithful::check(&search, of, options));
-    certificate.quality = Some(quality);
-    certificate
 }
 
 /// The points whose places on the mesh are looked up, of so many.

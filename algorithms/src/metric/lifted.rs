@@ -94,10 +94,15 @@ impl<S: Scalar> Lifted<S> {
             bases,
             weight,
         };
-        for point in 0..lifted.cloud.len() {
-            for i in 0..plane_dimension {
+        lifted.bases_are_orthonormal()?;
+        Ok(lifted)
+    }
+
+    fn bases_are_orthonormal(&self) -> Result<(), Error> {
+        for point in 0..self.cloud.len() {
+            for i in 0..self.plane_dimension {
                 for j in 0..=i {
-                    let product = dot(lifted.vector(point, i), lifted.vector(point, j));
+                    let product = dot(self.vector(point, i), self.vector(point, j));
                     let expected = if i == j { 1.0 } else { 0.0 };
                     let error = (product - expected).abs();
                     if error > ORTHONORMAL || error.is_nan() {
@@ -112,7 +117,7 @@ impl<S: Scalar> Lifted<S> {
                 }
             }
         }
-        Ok(lifted)
+        Ok(())
     }
 
     /// The same space as points of R^(N + N(N+1)/2), whose straight-line distances are the lifted

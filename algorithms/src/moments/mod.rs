@@ -10,13 +10,14 @@
 //! | idea | file |
 //! | --- | --- |
 //! | centering, principal axes, null directions | `placement` |
-//! | the tree and the moments of its nodes | `tree` |
+//! | the tree and the moments of its nodes | `tree`, `node`, `median` |
 //! | when a point is inside, to the bit | `reach` |
 //! | all balls about a few centers that lie together | `group` |
 //! | leading directions of such a group | `frame` |
 //! | the dimension from part of the spectrum, with proof | `decide` |
 //! | the same in more than 64 coordinates, ball by ball | `wide` |
-//! | dimension 2 for many balls at once, with proof | `settle` |
+//! | dimension 2 for many balls at once, with proof | `settle`, `plane` |
+//! | moments as they are handed out, in the coordinates of the data | `ball` |
 //!
 //! **What is exact.** Membership: that of `squared_distance(a, b).sqrt()`, rounded to the scalar of
 //! the cloud, `< eps`; a filter in single precision decides where it provably can, the original
@@ -31,11 +32,15 @@
 //!
 //! The result depends neither on the number of threads nor on the processor.
 
+mod ball;
 mod decide;
 mod frame;
 mod group;
+mod median;
+mod node;
 mod packed;
 mod placement;
+mod plane;
 mod reach;
 mod settle;
 mod tree;
@@ -46,8 +51,9 @@ mod tests;
 
 use crate::execute::{self, Execute, Serial};
 use crate::spectrum::VarianceTolerance;
+pub use ball::BallMoments;
 use crosscap_core::{BallDimension, Error, PointCloud, Scalar};
-use group::{Ball, Group, Sweep};
+use group::{Group, Sweep};
 use reach::Reach;
 use settle::{Settled, Settler};
 use tree::Tree;
@@ -57,19 +63,6 @@ const LARGEST_WIDE: f64 = 1e150;
 const LARGEST_NARROW: f64 = 1e36;
 /// Groups after which a sweep starts afresh, so that threads that start there find the same.
 const RUN: usize = 64;
-
-/// Moments of the points in a ball.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BallMoments {
-    /// Row of the cloud that is the center.
-    pub center: usize,
-    /// Points in the ball, the center among them.
-    pub count: u32,
-    /// Their mean, N coordinates.
-    pub mean: Vec<f64>,
-    /// Their covariance (sums over the number of points, not that less one), N * N in row order.
-    pub covariance: Vec<f64>,
-}
 
 /// A cloud in a tree that knows the moments of its nodes.
 ///
@@ -249,69 +242,11 @@ impl<'a, S: Scalar> MomentTree<'a, S> {
         sweep.balls(group, &mut |position, ball| {
             moments.center = self.tree.order[position] as usize;
             match ball {
-                Ok(ball) => self.lift(reach.unit, &ball, &mut moments),
+                Ok(ball) => moments.lift(&self.tree, reach.unit, &ball),
                 Err(rows) => moments.sum(self.cloud, rows),
             }
             each(&moments);
         });
-    }
-
-    /// From the coordinates of the tree to those of the data.
-    fn lift(&self, unit: f64, ball: &Ball<'_>, out: &mut BallMoments) {
-        let (n, ambient) = (self.tree.n, self.tree.placement.ambient);
-        let placement = &self.tree.placement;
-        out.count = ball.count;
-        out.mean.resize(ambient, 0.0);
-        let middle: Vec<f64> = ball
-            .center
-            .iter()
-            .zip(ball.mean)
-            .map(|(c, m)| c + m * unit)
-            .collect();
-        placement.lift(&middle, &mut out.mean);
-        for (m, c) in out.mean.iter_mut().zip(&placement.center) {
-            *m += c;
-        }
-        let mut dense = Vec::new();
-        packed::unfold(ball.covariance, n, &mut dense);
-        let mut half = vec![0.0; n * ambient];
-        for (row, out) in dense.chunks_exact(n).zip(half.chunks_exact_mut(ambient)) {
-            placement.lift(row, out);
-        }
-        out.covariance.resize(ambient * ambient, 0.0);
-        let mut column = vec![0.0; n];
-        for (k, out) in out.covariance.chunks_exact_mut(ambient).enumerate() {
-            for (c, row) in column.iter_mut().zip(half.chunks_exact(ambient)) {
-                *c = row[k] * (unit * unit);
-            }
-            placement.lift(&column, out);
-        }
-    }
-}
-
-impl BallMoments {
-    /// By definition: the mean, then the products about it.
-    fn sum<S: Scalar>(&mut self, cloud: &PointCloud<S>, rows: &[usize]) {
-        let n = cloud.dimension();
-        let share = 1.0 / rows.len() as f64;
-        self.count = rows.len() as u32;
-        self.mean.clear();
-        self.mean.resize(n, 0.0);
-        for &i in rows {
-            for (m, x) in self.mean.iter_mut().zip(cloud.point(i)) {
-                *m += x.as_f64();
-            }
-        }
-        self.mean.iter_mut().for_each(|m| *m *= share);
-        let mut products = vec![0.0; packed::length(n)];
-        let mut from = vec![0.0; n];
-        for &i in rows {
-            for ((f, x), m) in from.iter_mut().zip(cloud.point(i)).zip(&self.mean) {
-                *f = x.as_f64() - m;
-            }
-            packed::add_square(&mut products, &from, share);
-        }
-        packed::unfold(&products, n, &mut self.covariance);
     }
 }
 

@@ -14,6 +14,7 @@
 //! to be summed. Away from curves most nodes of 64 points are settled this way.
 
 use super::packed;
+use super::plane::Plane;
 use super::reach::Reach;
 use crosscap_core::Scalar;
 
@@ -29,9 +30,6 @@ const WIDEST: f64 = 0.3;
 const POINTWISE: usize = 3;
 /// Points that are added up side by side: a leaf, where there are that few coordinates.
 const LANES: usize = 8;
-/// Rounds of subspace iteration for the plane, and those from the plane of the node before.
-const COLD_ROUNDS: usize = 6;
-const WARM_ROUNDS: usize = 1;
 
 /// What can be said about the balls of a node together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,9 +70,7 @@ pub(super) struct Settler<'a, S: Scalar> {
     offset: Vec<f64>,
     inner: Moments,
     outer: Moments,
-    /// Two orthonormal directions, one after the other; empty when there are none yet.
-    plane: Vec<f64>,
-    image: Vec<f64>,
+    plane: Plane,
 }
 
 impl<'a, S: Scalar> Settler<'a, S> {
@@ -87,8 +83,7 @@ impl<'a, S: Scalar> Settler<'a, S> {
             offset: vec![0.0; reach.tree.n],
             inner: Moments::default(),
             outer: Moments::default(),
-            plane: Vec::new(),
-            image: Vec::new(),
+            plane: Plane::default(),
         }
     }
 
@@ -98,7 +93,7 @@ impl<'a, S: Scalar> Settler<'a, S> {
 
     /// Forgets what was kept from the nodes before.
     pub(super) fn forget(&mut self) {
-        self.plane.clear();
+        self.plane.forget();
     }
 
     /// What can be said about the balls about all points of a node, for the tolerance `dt`.
@@ -122,16 +117,16 @@ impl<'a, S: Scalar> Settler<'a, S> {
         }
         let trace = packed::trace(&self.inner.products, n);
         let outer_trace = packed::trace(&self.outer.products, n);
-        if !(trace > 0.0 && self.follow(n)) {
+        if !(trace > 0.0 && self.plane.follow(&self.outer.products, n)) {
             return Settled::Open;
         }
-        let flat = self.in_plane(&self.inner.products, n);
+        let flat = self.plane.trace_within(&self.inner.products);
         if trace - flat >= dt * trace {
             return Settled::Hopeless;
         }
-        let beside = (outer_trace - self.in_plane(&self.outer.products, n)).max(0.0);
-        let second = self.second(&self.inner.products, n);
-        let first = outer_trace - self.second(&self.outer.products, n);
+        let beside = (outer_trace - self.plane.trace_within(&self.outer.products)).max(0.0);
+        let second = self.plane.second(&self.inner.products);
+        let first = outer_trace - self.plane.second(&self.outer.products);
         if beside < dt * (1.0 - MARGIN) * (flat + beside)
             && second >= dt * (1.0 + MARGIN) * (second + first)
         {
@@ -144,13 +139,33 @@ impl<'a, S: Scalar> Settler<'a, S> {
     /// Sums the moments about the means of the inner and the outer set; returns the count of the inner.
     #[inline(always)]
     fn gather(&mut self, node: u32, shell: f64) -> usize {
+        let n = self.reach.tree.n;
+        let inverse = self.reach.inverse;
+        let width = self.reach.tree.nodes[node as usize].radius * inverse;
+        let (near, far) = (1.0 - shell, 1.0 + shell);
+        let inner_count = self.gather_nodes(node, [near, far]);
+        self.common_count = inner_count as u32;
+        self.outer.count = self.inner.count;
+        self.outer.sum.clone_from(&self.inner.sum);
+        self.outer.products.clone_from(&self.inner.products);
+        if n <= POINTWISE {
+            let limits = [(near - width) / inverse, (far + width) / inverse];
+            return inner_count + self.gather_points(node, limits);
+        }
+        self.gather_leaves(node);
+        self.center_moments();
+        inner_count
+    }
+
+    /// Adds the nodes that are inside of every ball to the inner set, and lists the leaves that are inside of some of them as the
+    /// fringe. Returns how many points are in the inner set.
+    #[inline(always)]
+    fn gather_nodes(&mut self, node: u32, [near, far]: [f64; 2]) -> usize {
         let tree = self.reach.tree;
-        let n = tree.n;
         let inverse = self.reach.inverse;
         let center = tree.mean(node as usize);
         let width = tree.nodes[node as usize].radius * inverse;
-        let (near, far) = (1.0 - shell, 1.0 + shell);
-        self.inner.reset(n);
+        self.inner.reset(tree.n);
         self.fringe.clear();
         self.stack.clear();
         self.stack.push(0);
@@ -187,14 +202,14 @@ impl<'a, S: Scalar> Settler<'a, S> {
                 self.stack.push(at + 1);
             }
         }
-        self.common_count = inner_count as u32;
-        self.outer.count = self.inner.count;
-        self.outer.sum.clone_from(&self.inner.sum);
-        self.outer.products.clone_from(&self.inner.products);
-        if n <= POINTWISE {
-            let limits = [(near - width) / inverse, (far + width) / inverse];
-            return inner_count + self.gather_points(node, limits);
-        }
+        inner_count
+    }
+
+    /// Adds the leaves of the fringe to the outer set.
+    #[inline(always)]
+    fn gather_leaves(&mut self, node: u32) {
+        let tree = self.reach.tree;
+        let center = tree.mean(node as usize);
         for &at in &self.fringe {
             for ((o, a), b) in self
                 .offset
@@ -211,8 +226,6 @@ impl<'a, S: Scalar> Settler<'a, S> {
                 tree.scatter(at as usize),
             );
         }
-        self.center_moments();
-        inner_count
     }
 
     /// Adds the points of the fringe one by one: to the inner set those closer to the center of
@@ -284,65 +297,6 @@ impl<'a, S: Scalar> Settler<'a, S> {
         }
     }
 
-    /// Turns the plane towards the leading directions of the outer scatter.
-    #[inline(always)]
-    fn follow(&mut self, n: usize) -> bool {
-        let rounds = if self.plane.len() == 2 * n {
-            WARM_ROUNDS
-        } else {
-            self.plane.clear();
-            // A fixed start that leans on no direction.
-            self.plane
-                .extend((0..2 * n).map(|k| (1.7 * k as f64 + 0.3).cos()));
-            COLD_ROUNDS
-        };
-        for _ in 0..rounds {
-            self.image.clear();
-            self.image.resize(2 * n, 0.0);
-            for (v, out) in self
-                .plane
-                .chunks_exact(n)
-                .zip(self.image.chunks_exact_mut(n))
-            {
-                multiply(&self.outer.products, v, out);
-            }
-            std::mem::swap(&mut self.plane, &mut self.image);
-            let (v, w) = self.plane.split_at_mut(n);
-            if !(unit(v) && {
-                let along: f64 = v.iter().zip(&*w).map(|(a, b)| a * b).sum();
-                w.iter_mut().zip(&*v).for_each(|(b, a)| *b -= along * a);
-                unit(w)
-            }) {
-                self.plane.clear();
-                return false;
-            }
-        }
-        // A nearly parallel pair is not orthogonal to the last bit after one pass.
-        let (v, w) = self.plane.split_at_mut(n);
-        let along: f64 = v.iter().zip(&*w).map(|(a, b)| a * b).sum();
-        w.iter_mut().zip(&*v).for_each(|(b, a)| *b -= along * a);
-        unit(w)
-    }
-
-    /// Trace within the plane.
-    #[inline(always)]
-    fn in_plane(&self, products: &[f64], n: usize) -> f64 {
-        let (v, w) = self.plane.split_at(n);
-        form(products, v, v) + form(products, w, w)
-    }
-
-    /// The smaller eigenvalue of the compression to the plane.
-    #[inline(always)]
-    fn second(&self, products: &[f64], n: usize) -> f64 {
-        let (v, w) = self.plane.split_at(n);
-        let (a, b, c) = (
-            form(products, v, v),
-            form(products, v, w),
-            form(products, w, w),
-        );
-        0.5 * (a + c) - (0.25 * (a - c) * (a - c) + b * b).sqrt()
-    }
-
     /// How many points of the fringe are in the ball about the first point of the node.
     fn fringe_count(&self, node: u32, shell: f64) -> u32 {
         let tree = self.reach.tree;
@@ -407,52 +361,4 @@ fn add(moments: &mut Moments, count: f64, offset: &[f64], scatter: &[f64]) {
         *s += count * o;
     }
     packed::add_shifted(&mut moments.products, scatter, offset, count, 1.0);
-}
-
-/// `out += matrix v`.
-#[inline(always)]
-fn multiply(matrix: &[f64], v: &[f64], out: &mut [f64]) {
-    let n = v.len();
-    let mut at = 0;
-    for i in 0..n {
-        let row = &matrix[at..at + n - i];
-        let mut sum = row[0] * v[i];
-        for ((p, y), o) in row[1..].iter().zip(&v[i + 1..]).zip(&mut out[i + 1..]) {
-            sum += p * y;
-            *o += p * v[i];
-        }
-        out[i] += sum;
-        at += n - i;
-    }
-}
-
-/// Makes `v` a unit vector, `false` where it is none.
-#[inline(always)]
-fn unit(v: &mut [f64]) -> bool {
-    let square: f64 = v.iter().map(|x| x * x).sum();
-    if !(square > 1e-280 && square < 1e280) {
-        return false;
-    }
-    let inverse = 1.0 / square.sqrt();
-    v.iter_mut().for_each(|x| *x *= inverse);
-    true
-}
-
-/// `v^T matrix w`.
-#[inline(always)]
-fn form(matrix: &[f64], v: &[f64], w: &[f64]) -> f64 {
-    let n = v.len();
-    let mut at = 0;
-    let mut sum = 0.0;
-    for i in 0..n {
-        let row = &matrix[at..at + n - i];
-        let (mut along, mut across) = (row[0] * w[i], 0.0);
-        for ((p, x), y) in row[1..].iter().zip(&v[i + 1..]).zip(&w[i + 1..]) {
-            along += p * y;
-            across += p * x;
-        }
-        sum += v[i] * along + w[i] * across;
-        at += n - i;
-    }
-    sum
 }

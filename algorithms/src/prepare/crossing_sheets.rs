@@ -24,6 +24,55 @@ fn nearer(patches: &[QuadraticPatch; 2], x: &Vector3<f64>) -> (usize, f64) {
     (k, d[k])
 }
 
+/// Sum of the squared distances to the one sheet that fits best.
+fn left_by_one(points: &[Vector3<f64>], radius: f64) -> f64 {
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let mut single = QuadraticPatch::plane(Vector3::zeros(), axes);
+    single.fit(points.iter().copied(), radius);
+    let squares = points.iter().map(|x| single.signed_distance(x).powi(2));
+    squares.sum()
+}
+
+/// Two planes with the line that they share as first axis; none where the sine of their angle is below `least`.
+fn along_the_line(pair: &PlanePair, least: f64) -> Option<[QuadraticPatch; 2]> {
+    let along = pair.normals[0].cross(&pair.normals[1]);
+    if along.norm() < least {
+        return None;
+    }
+    let along = along.normalize();
+    Some([0, 1].map(|k| {
+        let normal = pair.normals[k];
+        let origin = normal * -pair.offsets[k];
+        QuadraticPatch::plane(origin, [along, normal.cross(&along), normal])
+    }))
+}
+
+/// Fits both patches to the points that are nearer to each, in [`ROUNDS`]. Says whose every point was in the last one, and the
+/// sum of the squared distances then; nothing where a patch has too few points.
+fn fit_both(
+    patches: &mut [QuadraticPatch; 2],
+    points: &[Vector3<f64>],
+    radius: f64,
+) -> Option<(Vec<usize>, f64)> {
+    let mut owners = vec![0; points.len()];
+    let mut sum = 0.0;
+    for _ in 0..ROUNDS {
+        sum = 0.0;
+        for (owner, x) in owners.iter_mut().zip(points) {
+            let (k, d) = nearer(patches, x);
+            *owner = k;
+            sum += d * d;
+        }
+        for (k, patch) in patches.iter_mut().enumerate() {
+            let own = points.iter().zip(&owners).filter(|x| *x.1 == k);
+            if !patch.fit(own.map(|x| *x.0), radius) {
+                return None;
+            }
+        }
+    }
+    Some((owners, sum))
+}
+
 impl CrossingSheets {
     /// Two sheets through the neighbors of a row, where they leave less scatter than `limit` (unit of the
     /// data) and than half of what one sheet leaves.
@@ -52,45 +101,15 @@ impl CrossingSheets {
                 Vector3::from_column_slice(&local)
             })
             .collect();
-        let mut single =
-            QuadraticPatch::plane(Vector3::zeros(), [Vector3::x(), Vector3::y(), Vector3::z()]);
-        single.fit(points.iter().copied(), radius);
-        let alone: f64 = points
-            .iter()
-            .map(|x| single.signed_distance(x).powi(2))
-            .sum();
         let pair = PlanePair::direct(points.iter().copied(), radius).ok()?;
-        let along = pair.normals[0].cross(&pair.normals[1]);
-        if along.norm() < tuning.sine {
-            return None;
-        }
-        let along = along.normalize();
-        let mut patches = [0, 1].map(|k| {
-            let normal = pair.normals[k];
-            let origin = normal * -pair.offsets[k];
-            QuadraticPatch::plane(origin, [along, normal.cross(&along), normal])
-        });
-        let mut owners = vec![0; points.len()];
-        let mut sum = 0.0;
-        for _ in 0..ROUNDS {
-            sum = 0.0;
-            for (owner, x) in owners.iter_mut().zip(&points) {
-                let (k, d) = nearer(&patches, x);
-                *owner = k;
-                sum += d * d;
-            }
-            for (k, patch) in patches.iter_mut().enumerate() {
-                let own = points.iter().zip(&owners).filter(|x| *x.1 == k);
-                if !patch.fit(own.map(|x| *x.0), radius) {
-                    return None;
-                }
-            }
-        }
+        let mut patches = along_the_line(&pair, tuning.sine)?;
+        let (owners, sum) = fit_both(&mut patches, &points, radius)?;
         let second: usize = owners.iter().sum();
         let share = second as f64 / points.len() as f64;
         let even = (tuning.sheet_share..=1.0 - tuning.sheet_share).contains(&share);
         let scatter = (sum / points.len() as f64).sqrt();
-        (even && sum <= tuning.gain * tuning.gain * alone && scatter <= limit).then_some(Self {
+        let most = tuning.gain * tuning.gain * left_by_one(&points, radius);
+        (even && sum <= most && scatter <= limit).then_some(Self {
             frame,
             patches,
             radius,

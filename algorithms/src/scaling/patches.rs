@@ -4,6 +4,8 @@ use super::{Scaled, pivots::PivotFrame};
 use crate::execute::{self, Execute};
 use crosscap_core::{Error, PointCloud, Row, SparseDistances, Table};
 use nalgebra::DMatrix;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// Points of a patch that are scaled; the others are placed by their distances to these.
 const PIVOTS: usize = 48;
@@ -60,7 +62,7 @@ pub fn scale_patches(
         |(), k| Patch::new(known, centers[k]),
     );
     let width = patches.iter().map(Patch::width).max().unwrap_or(1);
-    let (places, placed) = lay(n, width, &patches);
+    let (places, placed) = Laying::new(n, width, &patches).lay();
     if let Some(point) = placed.iter().position(|p| !p) {
         return Err(Error::SparseNeighborhood {
             point,
@@ -168,78 +170,111 @@ impl Patch {
     }
 }
 
-/// Places of all points in R^`width`, and which of them have one.
-fn lay(n: usize, width: usize, patches: &[Patch]) -> (Vec<f64>, Vec<bool>) {
-    let mut places = vec![0.0; n * width];
-    let mut placed = vec![false; n];
-    let mut patches_of: Table<Row, Vec<u32>> = Table::filled(n, Vec::new());
-    for (p, patch) in patches.iter().enumerate() {
-        for &j in &patch.members {
-            patches_of[j].push(p as u32);
+/// Patches that are laid one after the other, and what is laid so far.
+struct Laying<'a> {
+    patches: &'a [Patch],
+    /// Dimension of the space that they are laid in.
+    width: usize,
+    places: Vec<f64>,
+    placed: Vec<bool>,
+    patches_of: Table<Row, Vec<u32>>,
+    /// Number of placed members of every patch.
+    common: Vec<usize>,
+    laid: Vec<bool>,
+    /// With how many placed members a patch could not be laid.
+    tried: Vec<usize>,
+}
+
+impl<'a> Laying<'a> {
+    fn new(n: usize, width: usize, patches: &'a [Patch]) -> Self {
+        let mut patches_of: Table<Row, Vec<u32>> = Table::filled(n, Vec::new());
+        for (p, patch) in patches.iter().enumerate() {
+            for &j in &patch.members {
+                patches_of[j].push(p as u32);
+            }
+        }
+        Self {
+            patches,
+            width,
+            places: vec![0.0; n * width],
+            placed: vec![false; n],
+            patches_of,
+            common: vec![0; patches.len()],
+            laid: vec![false; patches.len()],
+            tried: vec![0; patches.len()],
         }
     }
-    // Number of placed members of every patch, and those patches by it.
-    let mut common = vec![0usize; patches.len()];
-    let mut laid = vec![false; patches.len()];
-    let mut tried = vec![0usize; patches.len()];
-    let mut queue = std::collections::BinaryHeap::new();
-    // The first patch is the one with the most extent in all dimensions.
-    let extent = |p: &Patch| {
-        if p.width() == width {
-            p.frame.eigenvalues[width - 1]
-        } else {
-            0.0
+
+    /// Lays all patches that can be, the one with the most placed members first. Places of all points in R^`width`, and which of
+    /// them have one.
+    fn lay(mut self) -> (Vec<f64>, Vec<bool>) {
+        let mut queue = BinaryHeap::new();
+        if let Some(first) = self.first() {
+            let turn = DMatrix::<f64>::identity(self.width, self.width);
+            let middle = vec![0.0; self.width];
+            self.place(first, &(turn, middle.clone(), middle));
+            self.ask_again(first, &mut queue);
         }
-    };
-    let first = (0..patches.len()).max_by(|&a, &b| {
-        let by_extent = extent(&patches[a]).total_cmp(&extent(&patches[b]));
-        by_extent.then(b.cmp(&a))
-    });
-    queue.extend(first.map(|p| (usize::MAX, std::cmp::Reverse(p))));
-    while let Some((count, std::cmp::Reverse(p))) = queue.pop() {
-        let current = if count == usize::MAX {
-            count
-        } else {
-            common[p]
-        };
-        if laid[p] || count != current || tried[p] == count {
-            continue;
-        }
-        tried[p] = count;
-        let patch = &patches[p];
-        let motion = if count == usize::MAX {
-            let turn = DMatrix::<f64>::identity(width, width);
-            Some((turn, vec![0.0; width], vec![0.0; width]))
-        } else {
-            motion(patch, width, &places, &placed)
-        };
-        let Some((turn, from, to)) = motion else {
-            continue;
-        };
-        laid[p] = true;
-        for (k, &j) in patch.members.iter().enumerate() {
-            if placed[j.index()] {
+        while let Some((count, Reverse(p))) = queue.pop() {
+            if self.laid[p] || count != self.common[p] || self.tried[p] == count {
                 continue;
             }
-            placed[j.index()] = true;
-            for r in 0..width {
-                let turned = (0..width).map(|c| turn[(r, c)] * (patch.at(k, c) - from[c]));
-                places[j.index() * width + r] = to[r] + turned.sum::<f64>();
-            }
-            for &other in &patches_of[j] {
-                common[other as usize] += 1;
+            self.tried[p] = count;
+            let motion = motion(&self.patches[p], self.width, &self.places, &self.placed);
+            if let Some(motion) = motion {
+                self.place(p, &motion);
+                self.ask_again(p, &mut queue);
             }
         }
-        for &j in &patch.members {
-            for &other in &patches_of[j] {
+        (self.places, self.placed)
+    }
+
+    /// The patch with the most extent in all dimensions.
+    fn first(&self) -> Option<usize> {
+        let extent = |p: &Patch| {
+            if p.width() == self.width {
+                p.frame.eigenvalues[self.width - 1]
+            } else {
+                0.0
+            }
+        };
+        (0..self.patches.len()).max_by(|&a, &b| {
+            let by_extent = extent(&self.patches[a]).total_cmp(&extent(&self.patches[b]));
+            by_extent.then(b.cmp(&a))
+        })
+    }
+
+    /// Places the members of a patch that have no place yet.
+    fn place(&mut self, p: usize, (turn, from, to): &Motion) {
+        let width = self.width;
+        let patch = &self.patches[p];
+        self.laid[p] = true;
+        for (k, &j) in patch.members.iter().enumerate() {
+            if self.placed[j.index()] {
+                continue;
+            }
+            self.placed[j.index()] = true;
+            for r in 0..width {
+                let turned = (0..width).map(|c| turn[(r, c)] * (patch.at(k, c) - from[c]));
+                self.places[j.index() * width + r] = to[r] + turned.sum::<f64>();
+            }
+            for &other in &self.patches_of[j] {
+                self.common[other as usize] += 1;
+            }
+        }
+    }
+
+    /// Queues the patches that have more placed members than before, now that a patch is laid.
+    fn ask_again(&self, p: usize, queue: &mut BinaryHeap<(usize, Reverse<usize>)>) {
+        for &j in &self.patches[p].members {
+            for &other in &self.patches_of[j] {
                 let other = other as usize;
-                if !laid[other] && tried[other] != common[other] {
-                    queue.push((common[other], std::cmp::Reverse(other)));
+                if !self.laid[other] && self.tried[other] != self.common[other] {
+                    queue.push((self.common[other], Reverse(other)));
                 }
             }
         }
     }
-    (places, placed)
 }
 
 /// Rotation or reflection, center before, center after.

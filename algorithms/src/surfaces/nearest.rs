@@ -64,6 +64,24 @@ pub(super) fn nearest_distances(patch: &Patch<'_>, cloud: &PointCloud<f64>) -> V
         .collect()
 }
 
+/// Which parameters are at an end of the patch and pushed out of it. A step out of the domain is no descent: they stay where they are.
+fn blocked(patch: &Patch<'_>, at: [f64; 2], push: [f64; 2]) -> [bool; 2] {
+    std::array::from_fn(|k| {
+        let [low, high] = patch.domain[k];
+        patch.ends[k] && ((at[k] <= low && push[k] < 0.0) || (at[k] >= high && push[k] > 0.0))
+    })
+}
+
+/// Parameters moved into the domain where the patch ends.
+fn held(patch: &Patch<'_>, mut at: [f64; 2]) -> [f64; 2] {
+    for (k, x) in at.iter_mut().enumerate() {
+        if patch.ends[k] {
+            *x = x.clamp(patch.domain[k][0], patch.domain[k][1]);
+        }
+    }
+    at
+}
+
 /// Squared distance at the local minimum that `start` leads to.
 fn descend(
     patch: &Patch<'_>,
@@ -72,7 +90,6 @@ fn descend(
     square: f64,
     place: &mut [Jet],
 ) -> f64 {
-    let (domain, ends) = (patch.domain, patch.ends);
     let (mut at, mut best, mut damping) = (start, square, 1e-4);
     for _ in 0..60 {
         (patch.map)([Jet::first(at[0]), Jet::second(at[1])], place);
@@ -81,13 +98,8 @@ fn descend(
             let r = t - x.value;
             [p + x.by_first * r, q + x.by_second * r]
         });
-        // A step out of the domain is no descent: that parameter stays where it is.
-        let blocked: [bool; 2] = std::array::from_fn(|k| {
-            let push = [p, q][k];
-            ends[k]
-                && ((at[k] <= domain[k][0] && push < 0.0) || (at[k] >= domain[k][1] && push > 0.0))
-        });
         let mut cross = f;
+        let blocked = blocked(patch, at, [p, q]);
         if blocked[0] {
             (p, cross) = (0.0, 0.0);
         }
@@ -98,15 +110,13 @@ fn descend(
         let floor = 1e-12 * (e + g) + f64::MIN_POSITIVE;
         let (a, b) = (e * (1.0 + damping) + floor, g * (1.0 + damping) + floor);
         let determinant = a * b - cross * cross;
-        let mut next = [
-            at[0] + (b * p - cross * q) / determinant,
-            at[1] + (a * q - cross * p) / determinant,
-        ];
-        for k in 0..2 {
-            if ends[k] {
-                next[k] = next[k].clamp(domain[k][0], domain[k][1]);
-            }
-        }
+        let next = held(
+            patch,
+            [
+                at[0] + (b * p - cross * q) / determinant,
+                at[1] + (a * q - cross * p) / determinant,
+            ],
+        );
         (patch.map)(next.map(Jet::constant), place);
         let new: f64 = place
             .iter()

@@ -3,7 +3,7 @@
 use super::curves::RimWalk;
 use super::sampling::Sampling;
 use super::surface::SampleSurface;
-use super::{Random, place_at, thin};
+use super::{Piece, Random, place_at, thin};
 use crosscap_core::{Error, PointCloud};
 
 /// A cloud with what is known about every point. Rows are in random order.
@@ -64,35 +64,15 @@ fn draw(surface: &SampleSurface, sampling: &Sampling) -> Result<Sample, Error> {
     } else {
         points = points.select(&order);
     }
-    let mut places: Vec<Option<Row>> = rows.into_iter().map(Some).collect();
-    let mut rows: Vec<Row> = order.iter().filter_map(|&k| places[k].take()).collect();
+    let mut rows = in_order(rows, &order);
     if sampling.boundary && surface.has_boundary() {
         let spacing = 0.9 * (surface.area() / rows.len() as f64).sqrt();
         let mut coordinates = points.coordinates().to_vec();
-        for (k, piece) in pieces
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| p.dimension() == 2)
-        {
-            for rim in piece.rims() {
-                let walk = RimWalk::new(piece.as_ref(), &rim);
-                let count = ((walk.length() / spacing).round() as usize).max(3);
-                for step in 0..count {
-                    let parameters = walk.parameters(walk.length() * step as f64 / count as f64);
-                    coordinates.extend(place_at(piece.as_ref(), parameters));
-                    rows.push(Row {
-                        piece: k as u32,
-                        parameters,
-                        boundary: true,
-                    });
-                }
-            }
-        }
+        add_rims(pieces, spacing, &mut rows, &mut coordinates);
         points = PointCloud::new(dimension, coordinates)?;
         let order = random.permutation(rows.len());
         points = points.select(&order);
-        let mut places: Vec<Option<Row>> = rows.into_iter().map(Some).collect();
-        rows = order.iter().filter_map(|&k| places[k].take()).collect();
+        rows = in_order(rows, &order);
     }
     if sampling.noise > 0.0 {
         let moved = points
@@ -108,6 +88,37 @@ fn draw(surface: &SampleSurface, sampling: &Sampling) -> Result<Sample, Error> {
         parameters: rows.iter().map(|r| r.parameters).collect(),
         pieces: rows.iter().map(|r| r.piece).collect(),
     })
+}
+
+/// Rows in another order, those that it leaves out dropped.
+fn in_order(rows: Vec<Row>, order: &[usize]) -> Vec<Row> {
+    let mut rows: Vec<Option<Row>> = rows.into_iter().map(Some).collect();
+    order.iter().filter_map(|&k| rows[k].take()).collect()
+}
+
+/// Points on the boundary circles of the surfaces among the pieces, about `spacing` apart along each, at least three.
+fn add_rims(
+    pieces: &[Box<dyn Piece>],
+    spacing: f64,
+    rows: &mut Vec<Row>,
+    coordinates: &mut Vec<f64>,
+) {
+    let surfaces = pieces.iter().enumerate();
+    for (k, piece) in surfaces.filter(|(_, p)| p.dimension() == 2) {
+        for rim in piece.rims() {
+            let walk = RimWalk::new(piece.as_ref(), &rim);
+            let count = ((walk.length() / spacing).round() as usize).max(3);
+            for step in 0..count {
+                let parameters = walk.parameters(walk.length() * step as f64 / count as f64);
+                coordinates.extend(place_at(piece.as_ref(), parameters));
+                rows.push(Row {
+                    piece: k as u32,
+                    parameters,
+                    boundary: true,
+                });
+            }
+        }
+    }
 }
 
 /// How many points each piece gets: curves as many as the mean spacing of the surface asks for, and the

@@ -55,55 +55,97 @@ fn thin_in_order(
             expected: "a positive finite number, in the unit of the data".into(),
         });
     }
-    let shadow = shadow(cloud);
-    // Rounding of the projection must not push a close point two cells away.
-    let reach = spacing * (1.0 + 1e-9);
-    let cell = |row: usize| shadow[row].map(|x| (x / reach).floor());
-    let slots = (2 * order.len()).next_power_of_two().max(2);
-    let shift = 64 - slots.trailing_zeros();
-    let slot = |c: [f64; 3]| {
+    let mut kept = Kept::new(cloud, spacing, order.len());
+    for &row in order {
+        if !kept.has_closer(row) {
+            kept.add(row);
+        }
+    }
+    Ok(kept.rows.into_iter().map(|(row, _)| row).collect())
+}
+
+/// No row.
+const NONE: usize = usize::MAX;
+
+/// Kept points, found again by the cell of their shadow in a hashed grid.
+struct Kept<'a> {
+    cloud: &'a PointCloud<f64>,
+    spacing: f64,
+    /// Side of a cell.
+    reach: f64,
+    shadow: Vec<[f64; 3]>,
+    /// Steps to the cells in which a closer point can be.
+    steps: Vec<[f64; 3]>,
+    /// Hashes are shifted right by this.
+    shift: u32,
+    /// Per slot the last one of `rows` in it.
+    head: Vec<usize>,
+    /// Per kept point: its row and the one kept before it in the same slot.
+    rows: Vec<(usize, usize)>,
+}
+
+impl<'a> Kept<'a> {
+    fn new(cloud: &'a PointCloud<f64>, spacing: f64, most: usize) -> Self {
+        let slots = (2 * most).next_power_of_two().max(2);
+        let axes = cloud.dimension().min(3);
+        let steps = (0..27)
+            .map(|k| [k % 3, k / 3 % 3, k / 9].map(|o| f64::from(o) - 1.0))
+            .filter(|o| o[axes..].iter().all(|&x| x == 0.0))
+            .collect();
+        Self {
+            cloud,
+            spacing,
+            // Rounding of the projection must not push a close point two cells away.
+            reach: spacing * (1.0 + 1e-9),
+            shadow: shadow(cloud),
+            steps,
+            shift: 64 - slots.trailing_zeros(),
+            head: vec![NONE; slots],
+            rows: Vec::new(),
+        }
+    }
+
+    fn cell(&self, row: usize) -> [f64; 3] {
+        self.shadow[row].map(|x| (x / self.reach).floor())
+    }
+
+    fn slot(&self, cell: [f64; 3]) -> usize {
         let mut hash = 0u64;
-        for x in c {
+        for x in cell {
             // Saturates for coordinates beyond 2^63 cells; such points then share cells, which costs time only.
             hash = (hash ^ (x as i64 as u64)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
             hash ^= hash >> 29;
         }
-        (hash.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> shift) as usize
-    };
-    const NONE: usize = usize::MAX;
-    let mut head = vec![NONE; slots];
-    // Per kept point: its row and the one kept before it in the same slot.
-    let mut kept: Vec<(usize, usize)> = Vec::new();
-    let axes = cloud.dimension().min(3);
-    let offsets: Vec<[f64; 3]> = (0..27)
-        .map(|k| [k % 3, k / 3 % 3, k / 9].map(|o| f64::from(o) - 1.0))
-        .filter(|o| o[axes..].iter().all(|&x| x == 0.0))
-        .collect();
-    let limit = spacing * spacing;
-    let limit_in_shadow = reach * reach;
-    for &row in order {
-        let home = cell(row);
-        let here = shadow[row];
-        let close = offsets.iter().any(|o| {
-            let mut at = head[slot([home[0] + o[0], home[1] + o[1], home[2] + o[2]])];
+        (hash.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> self.shift) as usize
+    }
+
+    /// Whether a kept point is closer to a row than the spacing.
+    fn has_closer(&self, row: usize) -> bool {
+        let home = self.cell(row);
+        let here = self.shadow[row];
+        let limit = self.spacing * self.spacing;
+        let limit_in_shadow = self.reach * self.reach;
+        self.steps.iter().any(|o| {
+            let slot = self.slot([home[0] + o[0], home[1] + o[1], home[2] + o[2]]);
+            let mut at = self.head[slot];
             while at != NONE {
-                let (other, next) = kept[at];
-                let there = shadow[other];
+                let (other, next) = self.rows[at];
+                let there = self.shadow[other];
                 let d: f64 = (0..3).map(|k| (here[k] - there[k]).powi(2)).sum();
-                if d < limit_in_shadow && cloud.squared_distance(row, other) < limit {
+                if d < limit_in_shadow && self.cloud.squared_distance(row, other) < limit {
                     return true;
                 }
                 at = next;
             }
             false
-        });
-        if !close {
-            let s = slot(home);
-            kept.push((row, head[s]));
-            head[s] = kept.len() - 1;
-        }
+        })
     }
-    Ok(kept.into_iter().map(|(row, _)| row).collect())
+
+    fn add(&mut self, row: usize) {
+        let slot = self.slot(self.cell(row));
+        self.rows.push((row, self.head[slot]));
+        self.head[slot] = self.rows.len() - 1;
+    }
 }
 
 /// Leading three principal coordinates of every point, or the coordinates themselves in up to

@@ -146,18 +146,7 @@ pub(crate) fn pick(
     };
     let mut kept = Vec::with_capacity(chosen.len());
     for column in chosen {
-        let found = match column {
-            ColumnName::Number(k) => Some(*k).filter(|&k| k < total),
-            ColumnName::Name(name) => names.and_then(|names| {
-                let same = |n: &String| n.trim().eq_ignore_ascii_case(name);
-                let begins = |n: &String| plain(n) == name.to_lowercase();
-                names
-                    .iter()
-                    .position(same)
-                    .or_else(|| names.iter().position(begins))
-            }),
-        };
-        let Some(k) = found else {
+        let Some(k) = position_of(column, names, total) else {
             let there = match names {
                 Some(names) => format!("{total} columns: {}", names.join(", ")),
                 None => format!("{total} columns without names"),
@@ -179,6 +168,20 @@ pub(crate) fn pick(
         kept,
         why: Why::Asked,
     })
+}
+
+/// Where the column of a number or a name stands: the column of that very name, else the first of that name with a unit behind it.
+fn position_of(column: &ColumnName, names: Option<&[String]>, total: usize) -> Option<usize> {
+    match column {
+        ColumnName::Number(k) => Some(*k).filter(|&k| k < total),
+        ColumnName::Name(name) => {
+            let names = names?;
+            let same = |n: &String| n.trim().eq_ignore_ascii_case(name);
+            let begins = |n: &String| plain(n) == name.to_lowercase();
+            let exact = names.iter().position(same);
+            exact.or_else(|| names.iter().position(begins))
+        }
+    }
 }
 
 /// A name without its unit, in lower case: `X [m]` is `x`.

@@ -27,54 +27,19 @@ impl<'a> Sheet<'a> {
         places: Option<&PointCloud<f64>>,
         any_dimension: bool,
     ) -> Parsed<Self> {
-        let complex = &mesh.complex;
-        let count = complex.vertices;
-        Complex::new(
-            count,
-            complex.triangles.clone(),
-            complex.curve_edges.clone(),
-        )
-        .map_err(|e| Flaw::new(format!("no mesh ({e})"), "a mesh").within("complex"))?;
-        if mesh.vertices.len() != count || mesh.point_index.len() != count {
-            return Err(Flaw::new(
-                format!(
-                    "{} places and {} rows",
-                    mesh.vertices.len(),
-                    mesh.point_index.len()
-                ),
-                format!("{count} of each, one a vertex"),
-            )
-            .within("vertices"));
-        }
+        one_of_each(mesh)?;
         let triangles = wound_triangles(mesh)
             .map_err(|e| Flaw::new(format!("no mesh ({e})"), "a mesh").within("complex"))?;
         if let Some(pieces) = &extras.pieces
-            && pieces.len() != complex.triangles.len()
+            && pieces.len() != triangles.len()
         {
             return Err(Flaw::new(
                 format!("{} labels", pieces.len()),
-                format!("{}, one a triangle", complex.triangles.len()),
+                format!("{}, one a triangle", triangles.len()),
             )
             .within("pieces"));
         }
-        let shown = match places {
-            Some(places) if places.len() == count && places.dimension() == 3 => places,
-            Some(places) => {
-                return Err(Flaw::new(
-                    format!("{} places in R^{}", places.len(), places.dimension()),
-                    format!("{count} in R^3, one a vertex"),
-                )
-                .within("places"));
-            }
-            None if any_dimension || mesh.vertices.dimension() == 3 => &mesh.vertices,
-            None => {
-                return Err(Flaw::new(
-                    format!("a mesh in R^{}", mesh.vertices.dimension()),
-                    "places in R^3, which this format holds: give some (a projection), or write \
-                     .npz or .vtu",
-                ));
-            }
-        };
+        let shown = shown(mesh, places, any_dimension)?;
         let places = shown
             .iter()
             .map(|p| std::array::from_fn(|k| p.get(k).copied().unwrap_or(0.0)))
@@ -87,5 +52,52 @@ impl<'a> Sheet<'a> {
             pieces: extras.pieces.as_deref(),
             metadata: &extras.metadata,
         })
+    }
+}
+
+/// Refuses a mesh that is none, or has not one place and one row a vertex.
+fn one_of_each(mesh: &Mesh) -> Parsed<()> {
+    let complex = &mesh.complex;
+    let count = complex.vertices;
+    Complex::new(
+        count,
+        complex.triangles.clone(),
+        complex.curve_edges.clone(),
+    )
+    .map_err(|e| Flaw::new(format!("no mesh ({e})"), "a mesh").within("complex"))?;
+    if mesh.vertices.len() != count || mesh.point_index.len() != count {
+        return Err(Flaw::new(
+            format!(
+                "{} places and {} rows",
+                mesh.vertices.len(),
+                mesh.point_index.len()
+            ),
+            format!("{count} of each, one a vertex"),
+        )
+        .within("vertices"));
+    }
+    Ok(())
+}
+
+/// The places to write: those that are given, else those of the mesh where the format can hold them.
+fn shown<'a>(
+    mesh: &'a Mesh,
+    places: Option<&'a PointCloud<f64>>,
+    any_dimension: bool,
+) -> Parsed<&'a PointCloud<f64>> {
+    let count = mesh.complex.vertices;
+    match places {
+        Some(places) if places.len() == count && places.dimension() == 3 => Ok(places),
+        Some(places) => Err(Flaw::new(
+            format!("{} places in R^{}", places.len(), places.dimension()),
+            format!("{count} in R^3, one a vertex"),
+        )
+        .within("places")),
+        None if any_dimension || mesh.vertices.dimension() == 3 => Ok(&mesh.vertices),
+        None => Err(Flaw::new(
+            format!("a mesh in R^{}", mesh.vertices.dimension()),
+            "places in R^3, which this format holds: give some (a projection), or write \
+             .npz or .vtu",
+        )),
     }
 }

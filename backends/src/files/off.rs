@@ -69,6 +69,68 @@ impl<'a> Rows<'a> {
     }
 }
 
+/// What a file says before its places.
+struct Head {
+    kind: Kind,
+    dimension: usize,
+    vertices: usize,
+    faces: usize,
+}
+
+impl Head {
+    /// Reads the first word and the numbers behind it, in one line or several.
+    fn read(rows: &mut Rows<'_>) -> Parsed<Self> {
+        let (line, head) = rows
+            .next(|| "OFF".into())
+            .map_err(|_| Flaw::new("an empty file", "OFF"))?;
+        let (word, same_line) = head.split_once(char::is_whitespace).unwrap_or((head, ""));
+        if same_line.trim().starts_with("BINARY") {
+            return Err(Flaw::line(
+                line,
+                "OFF BINARY",
+                "OFF as text: save it again so",
+            ));
+        }
+        // Some programs write the numbers right behind the word.
+        let (word, same_line) = match word.find("OFF") {
+            Some(at) if at + 3 < word.len() => (&word[..at + 3], &head[at + 3..]),
+            _ => (word, same_line),
+        };
+        let kind = Kind::of(word).ok_or_else(|| Flaw::line(line, excerpt(head), "OFF"))?;
+        let mut counts: Vec<(usize, &str)> =
+            same_line.split_whitespace().map(|f| (line, f)).collect();
+        let wanted = if kind.any_dimension { 3 } else { 2 };
+        while counts.len() < wanted {
+            let (line, row) = rows.next(|| "the numbers of vertices and faces".into())?;
+            counts.extend(row.split_whitespace().map(|f| (line, f)));
+        }
+        let count = |k: usize| {
+            let (line, field) = counts[k];
+            field.parse::<usize>().map_err(|_| {
+                Flaw::line(
+                    line,
+                    excerpt(field),
+                    "a number of vertices, faces or dimensions",
+                )
+            })
+        };
+        let (dimension, first) = match kind.any_dimension {
+            true => (count(0)?, 1),
+            false => (3, 0),
+        };
+        let (vertices, faces) = (count(first)?, count(first + 1)?);
+        if dimension == 0 {
+            return Err(Flaw::line(line, "dimension 0", "at least one coordinate"));
+        }
+        Ok(Self {
+            kind,
+            dimension,
+            vertices,
+            faces,
+        })
+    }
+}
+
 /// Reads vertices in any dimension: their number of coordinates, and these.
 pub(crate) fn parse_points(bytes: &[u8]) -> Parsed<Array> {
     let parts = read(bytes, false)?;
@@ -89,47 +151,12 @@ fn read(bytes: &[u8], with_faces: bool) -> Parsed<Parts> {
         rows: text(bytes)?.lines().enumerate(),
         line: 0,
     };
-    let (line, head) = rows
-        .next(|| "OFF".into())
-        .map_err(|_| Flaw::new("an empty file", "OFF"))?;
-    let (word, same_line) = head.split_once(char::is_whitespace).unwrap_or((head, ""));
-    if same_line.trim().starts_with("BINARY") {
-        return Err(Flaw::line(
-            line,
-            "OFF BINARY",
-            "OFF as text: save it again so",
-        ));
-    }
-    // Some programs write the numbers right behind the word.
-    let (word, same_line) = match word.find("OFF") {
-        Some(at) if at + 3 < word.len() => (&word[..at + 3], &head[at + 3..]),
-        _ => (word, same_line),
-    };
-    let kind = Kind::of(word).ok_or_else(|| Flaw::line(line, excerpt(head), "OFF"))?;
-    let mut counts: Vec<(usize, &str)> = same_line.split_whitespace().map(|f| (line, f)).collect();
-    let wanted = if kind.any_dimension { 3 } else { 2 };
-    while counts.len() < wanted {
-        let (line, row) = rows.next(|| "the numbers of vertices and faces".into())?;
-        counts.extend(row.split_whitespace().map(|f| (line, f)));
-    }
-    let count = |k: usize| {
-        let (line, field) = counts[k];
-        field.parse::<usize>().map_err(|_| {
-            Flaw::line(
-                line,
-                excerpt(field),
-                "a number of vertices, faces or dimensions",
-            )
-        })
-    };
-    let (dimension, first) = match kind.any_dimension {
-        true => (count(0)?, 1),
-        false => (3, 0),
-    };
-    let (vertices, faces) = (count(first)?, count(first + 1)?);
-    if dimension == 0 {
-        return Err(Flaw::line(line, "dimension 0", "at least one coordinate"));
-    }
+    let Head {
+        kind,
+        dimension,
+        vertices,
+        faces,
+    } = Head::read(&mut rows)?;
     let mut parts = Parts {
         dimension,
         ..Parts::default()

@@ -1,6 +1,6 @@
 //! A page to turn a mesh in.
 
-use super::scene::Frame;
+use super::scene::{Frame, Layout};
 use super::view::View;
 use super::{CurveKind, Scene, curve_color, piece_color};
 use crosscap_core::Error;
@@ -30,18 +30,7 @@ pub fn page(scene: &Scene) -> Result<String, Error> {
     } else {
         escape(&scene.title)
     };
-    let mut facts = String::new();
-    for (name, value) in &scene.facts {
-        let _ = writeln!(
-            facts,
-            "<tr><th>{}</th><td>{}</td></tr>",
-            escape(name),
-            escape(value)
-        );
-    }
-    if !facts.is_empty() {
-        facts = format!("<h2>Facts</h2>\n<table><tbody>\n{facts}</tbody></table>\n");
-    }
+    let facts = facts(scene);
     // Within a script element only "<" could end it or open a comment.
     let data = data(scene).to_string().replace('<', "\\u003c");
     Ok(format!(
@@ -88,45 +77,57 @@ pub fn page(scene: &Scene) -> Result<String, Error> {
     ))
 }
 
+/// The table of facts with its heading, nothing where there are none.
+fn facts(scene: &Scene) -> String {
+    if scene.facts.is_empty() {
+        return String::new();
+    }
+    let mut rows = String::new();
+    for (name, value) in &scene.facts {
+        let _ = writeln!(
+            rows,
+            "<tr><th>{}</th><td>{}</td></tr>",
+            escape(name),
+            escape(value)
+        );
+    }
+    format!("<h2>Facts</h2>\n<table><tbody>\n{rows}</tbody></table>\n")
+}
+
+/// One layout: places, points and marks in its frame, and the side from which most is seen.
+fn layout(scene: &Scene, index: usize, layout: &Layout) -> Value {
+    let wide = |p: &[f32; 3]| p.map(f64::from);
+    let used = scene.used(layout.places.len());
+    let of_places = layout.places.iter().zip(&used).filter(|(_, u)| **u);
+    let frame = Frame::of(of_places.map(|(p, _)| wide(p)))
+        .or_else(|| Frame::of(layout.points.iter().map(wide)))
+        .unwrap_or_default();
+    let place = |p: &[f32; 3]| frame.place(wide(p)).into();
+    let places: Vec<_> = layout.places.iter().map(place).collect();
+    let points: Vec<_> = layout.points.iter().map(place).collect();
+    let view = View::of_scene(scene, &places, &points, &used);
+    let rows: Vec<f64> = [view.right, view.up, view.toward]
+        .iter()
+        .flat_map(|r| [r.x, r.y, r.z])
+        .collect();
+    let marks = || scene.marks.iter().filter(|mark| mark.layout == index);
+    let [x, y, z] = frame.middle();
+    json!({
+        "name": layout.name,
+        "places": base64(layout.places.iter().flatten().flat_map(|c| c.to_le_bytes())),
+        "points": base64(layout.points.iter().flatten().flat_map(|c| c.to_le_bytes())),
+        "marks": base64(marks().flat_map(|m| m.place).flat_map(|c| c.to_le_bytes())),
+        "mark_texts": marks().map(|m| m.text.as_str()).collect::<Vec<_>>(),
+        "frame": [x, y, z, frame.half()],
+        "view": rows,
+    })
+}
+
 /// The scene as the script reads it.
 fn data(scene: &Scene) -> Value {
-    let wide = |p: &[f32; 3]| p.map(f64::from);
-    let layouts: Vec<Value> = scene
-        .layouts
-        .iter()
-        .enumerate()
-        .map(|(index, layout)| {
-            let used = scene.used(layout.places.len());
-            let frame = Frame::of(
-                layout
-                    .places
-                    .iter()
-                    .zip(&used)
-                    .filter(|(_, u)| **u)
-                    .map(|(p, _)| wide(p)),
-            )
-            .or_else(|| Frame::of(layout.points.iter().map(wide)))
-            .unwrap_or_default();
-            let place = |p: &[f32; 3]| frame.place(wide(p)).into();
-            let places: Vec<_> = layout.places.iter().map(place).collect();
-            let points: Vec<_> = layout.points.iter().map(place).collect();
-            let view = View::of_scene(scene, &places, &points, &used);
-            let rows: Vec<f64> = [view.right, view.up, view.toward]
-                .iter()
-                .flat_map(|r| [r.x, r.y, r.z])
-                .collect();
-            let marks = || scene.marks.iter().filter(|mark| mark.layout == index);
-            let [x, y, z] = frame.middle();
-            json!({
-                "name": layout.name,
-                "places": base64(layout.places.iter().flatten().flat_map(|c| c.to_le_bytes())),
-                "points": base64(layout.points.iter().flatten().flat_map(|c| c.to_le_bytes())),
-                "marks": base64(marks().flat_map(|m| m.place).flat_map(|c| c.to_le_bytes())),
-                "mark_texts": marks().map(|m| m.text.as_str()).collect::<Vec<_>>(),
-                "frame": [x, y, z, frame.half()],
-                "view": rows,
-            })
-        })
+    let layouts = scene.layouts.iter().enumerate();
+    let layouts: Vec<Value> = layouts
+        .map(|(index, of)| layout(scene, index, of))
         .collect();
     let pieces: Vec<Value> = scene
         .piece_names

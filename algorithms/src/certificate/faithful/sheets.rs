@@ -49,6 +49,13 @@ pub struct Offset {
     pub vertex: u32,
 }
 
+impl Offset {
+    /// How much more than allowed, in local spacings.
+    fn beyond(&self) -> f64 {
+        self.away - self.allowed
+    }
+}
+
 /// What the sheets about the vertices say.
 #[derive(Default)]
 pub(super) struct Found {
@@ -70,64 +77,93 @@ pub(super) fn look(
     let mesh = search.mesh;
     let mut wings = Wings::new(mesh, search.incidence, &search.standing);
     let mut patch = Patch::default();
-    let mut found = Found::default();
-    let mut scatters = Vec::new();
     let step = mesh.complex.vertices.div_ceil(LOOKED_AT).max(1);
-    let tests = mesh.complex.vertices.div_ceil(step) as f64;
-    let mut largest: Option<Offset> = None;
-    let mut least: Option<Merged> = None;
+    let mut tally = Tally {
+        level,
+        offset,
+        tests: mesh.complex.vertices.div_ceil(step) as f64,
+        scatters: Vec::new(),
+        found: Found::default(),
+        largest: None,
+        least: None,
+    };
     for v in (0..mesh.complex.vertices as u32).step_by(step) {
         let density = search.ground.density[v as usize];
         if density <= 0.0 {
             continue;
         }
-        let spacing = 1.0 / density.sqrt();
         wings.at(v, |feet| {
             let rows = feet
                 .iter()
                 .map(|&k| points.point(search.feet.rows[k as usize] as usize));
-            if !patch.fit(mesh.vertices.point(v as usize), rows) {
-                return;
-            }
-            scatters.push(patch.scatter / spacing);
-            let here = Offset {
-                away: patch.offset / spacing,
-                allowed: offset + 4.0 * patch.scatter / spacing * (1.0 + patch.leverage),
-                vertex: v,
-            };
-            let beyond = |o: &Offset| o.away - o.allowed;
-            if beyond(&here) > 0.0 {
-                found.off.push(here);
-            } else if largest.as_ref().is_none_or(|l| here.away > l.away) {
-                largest = Some(here);
-            }
-            let overlay = Overlay::of(&patch.flat, &patch.left, spacing);
-            if let Some(here) = overlay.map(|overlay| Merged::at(v, &overlay, spacing, tests)) {
-                if here.p < level {
-                    if !crease::explains(&patch.flat, &patch.left) {
-                        found.merged.push(here);
-                    }
-                } else if least.as_ref().is_none_or(|l| here.p < l.p) {
-                    least = Some(here);
-                }
+            if patch.fit(mesh.vertices.point(v as usize), rows) {
+                tally.count(v, &patch, 1.0 / density.sqrt());
             }
         });
     }
-    found.scatter = crate::certificate::quality::median(scatters);
-    found
-        .merged
-        .sort_by(|a, b| a.p.total_cmp(&b.p).then(a.vertex.cmp(&b.vertex)));
-    found.off.sort_by(|a, b| {
-        let beyond = |o: &Offset| o.away - o.allowed;
-        beyond(b)
-            .total_cmp(&beyond(a))
-            .then(a.vertex.cmp(&b.vertex))
-    });
-    if found.merged.is_empty() {
-        found.merged.extend(least);
+    tally.found()
+}
+
+/// What the sheets have said so far.
+struct Tally {
+    /// Sheets over each other that are less likely than this are told.
+    level: f64,
+    /// What a vertex may be off without scatter, in local spacings.
+    offset: f64,
+    /// How many vertices are looked at.
+    tests: f64,
+    scatters: Vec<f64>,
+    found: Found,
+    /// The largest offset within what is allowed.
+    largest: Option<Offset>,
+    /// The least likely of the gaps that are likely enough.
+    least: Option<Merged>,
+}
+
+impl Tally {
+    /// Counts a sheet at a vertex, with the patch through its points and their spacing.
+    fn count(&mut self, vertex: u32, patch: &Patch, spacing: f64) {
+        self.scatters.push(patch.scatter / spacing);
+        let here = Offset {
+            away: patch.offset / spacing,
+            allowed: self.offset + 4.0 * patch.scatter / spacing * (1.0 + patch.leverage),
+            vertex,
+        };
+        if here.beyond() > 0.0 {
+            self.found.off.push(here);
+        } else if self.largest.as_ref().is_none_or(|l| here.away > l.away) {
+            self.largest = Some(here);
+        }
+        let Some(overlay) = Overlay::of(&patch.flat, &patch.left, spacing) else {
+            return;
+        };
+        let here = Merged::at(vertex, &overlay, spacing, self.tests);
+        if here.p < self.level {
+            if !crease::explains(&patch.flat, &patch.left) {
+                self.found.merged.push(here);
+            }
+        } else if self.least.as_ref().is_none_or(|l| here.p < l.p) {
+            self.least = Some(here);
+        }
     }
-    if found.off.is_empty() {
-        found.off.extend(largest);
+
+    /// What was found, the worst first, and what comes nearest to it where nothing was.
+    fn found(self) -> Found {
+        let mut found = self.found;
+        found.scatter = crate::certificate::quality::median(self.scatters);
+        found
+            .merged
+            .sort_by(|a, b| a.p.total_cmp(&b.p).then(a.vertex.cmp(&b.vertex)));
+        found.off.sort_by(|a, b| {
+            let worse = b.beyond().total_cmp(&a.beyond());
+            worse.then(a.vertex.cmp(&b.vertex))
+        });
+        if found.merged.is_empty() {
+            found.merged.extend(self.least);
+        }
+        if found.off.is_empty() {
+            found.off.extend(self.largest);
+        }
+        found
     }
-    found
 }

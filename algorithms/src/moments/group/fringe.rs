@@ -76,6 +76,7 @@ impl<S: Scalar, const L: usize, const M: usize> Sweep<'_, S, L, M> {
         }
     }
 
+    /// Copies the fringe into the frame, unit by unit.
     #[inline(always)]
     pub(super) fn copy_fringe(&mut self) {
         let width = self.width;
@@ -115,30 +116,38 @@ impl<S: Scalar, const L: usize, const M: usize> Sweep<'_, S, L, M> {
                     self.lanes[unit * tests + M][lane] = self.beside as f32;
                 }
             }
-            let lanes = &mut self.lanes[unit * tests..unit * tests + M];
-            let mut middle = [0.0; M];
-            let share = 1.0 / count as f64;
-            for (lane, place) in places.iter().enumerate().take(count) {
-                for k in 0..M {
-                    lanes[k][lane] = place[k] as f32;
-                    middle[k] += place[k] * share;
-                }
-            }
-            let mut farthest = 0.0_f64;
-            for place in &places[..count] {
-                let square: f64 = place
-                    .iter()
-                    .zip(&middle)
-                    .map(|(a, b)| (a - b) * (a - b))
-                    .sum();
-                farthest = farthest.max(square);
-            }
-            for (k, x) in middle.iter().enumerate() {
-                self.middles[k * units + unit] = *x as f32;
-            }
-            self.radii.push((farthest.sqrt() * (1.0 + 1e-6)) as f32);
+            self.copy_lanes(unit, &places[..count]);
             self.rests.push((farthest_rest * (1.0 + 1e-6)) as f32);
         }
+    }
+
+    /// Writes the places of a unit lane by lane, with their middle and radius.
+    #[inline(always)]
+    fn copy_lanes(&mut self, unit: usize, places: &[[f64; M]]) {
+        let units = self.fringe.len();
+        let tests = M + usize::from(self.rest);
+        let lanes = &mut self.lanes[unit * tests..unit * tests + M];
+        let mut middle = [0.0; M];
+        let share = 1.0 / places.len() as f64;
+        for (lane, place) in places.iter().enumerate() {
+            for k in 0..M {
+                lanes[k][lane] = place[k] as f32;
+                middle[k] += place[k] * share;
+            }
+        }
+        let mut farthest = 0.0_f64;
+        for place in places {
+            let square: f64 = place
+                .iter()
+                .zip(&middle)
+                .map(|(a, b)| (a - b) * (a - b))
+                .sum();
+            farthest = farthest.max(square);
+        }
+        for (k, x) in middle.iter().enumerate() {
+            self.middles[k * units + unit] = *x as f32;
+        }
+        self.radii.push((farthest.sqrt() * (1.0 + 1e-6)) as f32);
     }
 
     /// The common moments in the frame.

@@ -3,7 +3,7 @@
 use super::chart::Scratch;
 use super::conformations::RingConformations;
 use super::error::RingError;
-use super::net::{DISC, Net};
+use super::net::{DISC, Net, Sheets};
 use crate::surfaces::Random;
 use crosscap_core::{Error, PointCloud};
 use std::f64::consts::TAU;
@@ -57,69 +57,115 @@ impl RingConformations {
                 expected: "at least 1 conformation".into(),
             }));
         }
-        let n = self.dimension();
         let separation = SEPARATION * self.fixed.scale;
         let net = Net::spread(self, separation, &mut Random::stream(seed, 0))?;
         let radius = DISC * separation;
-        let sheets = net.sheets();
-        let mut random = Random::stream(seed, 1);
-        let mut scratch = Scratch::new(self);
-        let mut coordinates = Vec::with_capacity(count * n);
-        let mut labels: Vec<u32> = Vec::with_capacity(count);
-        let mut weight = vec![0.0; sheets.pieces];
-        let (mut draws, mut failures) = (0usize, 0usize);
+        let mut drawing = Drawing::new(self, &net, radius, Random::stream(seed, 1));
         // Draws from a disc of full size.
         let mut per_chart = 0usize;
         let size: f64 = net.charts.iter().map(|c| c.scale * c.scale).sum();
         let expected = (3.0 * count as f64 / size) as usize + 1;
-        while labels.len() < count {
-            // Whole rounds: every chart gives as many draws as its disc is large.
+        while drawing.labels.len() < count {
             let round = expected
                 .min(8)
                 .max(if per_chart == 0 { expected / 2 } else { 1 });
             per_chart += round;
-            for (k, chart) in net.charts.iter().enumerate() {
-                // In proportion to the area of the disc, rounded up as often as its fraction says.
-                let share = round as f64 * chart.scale * chart.scale;
-                let more = chart.scale < 1.0 && random.uniform() < share.fract();
-                for _ in 0..share as usize + usize::from(more) {
-                    draws += 1;
-                    let reach = radius * chart.scale * random.uniform().sqrt();
-                    let (s, c) = libm::sincos(random.between(0.0, TAU));
-                    if !chart.lift(self, [reach * c, reach * s], &mut scratch) {
-                        failures += 1;
-                        continue;
-                    }
-                    let holds = |&&other: &&u32| {
-                        let other = &net.charts[other as usize];
-                        let [a, b] = other.coordinates(&scratch.place);
-                        a * a + b * b < (radius * other.scale).powi(2)
-                    };
-                    let cover = 1 + sheets.beside[k].iter().filter(holds).count();
-                    let acceptance = 1.0 / cover as f64;
-                    weight[sheets.piece[k] as usize] += acceptance;
-                    if random.uniform() < acceptance {
-                        coordinates.extend_from_slice(&scratch.place);
-                        labels.push(sheets.piece[k]);
-                    }
-                }
-            }
-            let given_up = failures as f64 / draws as f64;
+            drawing.round(round);
+            let given_up = drawing.given_up();
             if given_up > GIVEN_UP {
                 return Err(RingError::TooBent { given_up });
             }
         }
         let disc = 0.5 * TAU * radius * radius;
-        let areas = weight.iter().map(|w| w * disc / per_chart as f64).collect();
-        let mut order = random.permutation(labels.len());
+        let area = |w: &f64| w * disc / per_chart as f64;
+        let mut order = drawing.random.permutation(drawing.labels.len());
         order.truncate(count);
         Ok(RingSample {
-            points: PointCloud::new(n, coordinates)?.select(&order),
-            pieces: order.iter().map(|&k| labels[k]).collect(),
-            areas,
+            areas: drawing.weight.iter().map(area).collect(),
+            given_up: drawing.given_up(),
+            pieces: order.iter().map(|&k| drawing.labels[k]).collect(),
+            points: PointCloud::new(self.dimension(), drawing.coordinates)?.select(&order),
             charts: net.charts.len(),
-            given_up: failures as f64 / draws as f64,
             margin: net.margin,
         })
+    }
+}
+
+/// Draws from the discs of all charts.
+struct Drawing<'a> {
+    ring: &'a RingConformations,
+    net: &'a Net,
+    sheets: Sheets,
+    /// Of the disc of a chart of full size.
+    radius: f64,
+    random: Random,
+    scratch: Scratch,
+    /// Of what was accepted.
+    coordinates: Vec<f64>,
+    /// The piece of each that was accepted.
+    labels: Vec<u32>,
+    /// Sum of the probabilities of acceptance, by piece.
+    weight: Vec<f64>,
+    draws: usize,
+    failures: usize,
+}
+
+impl<'a> Drawing<'a> {
+    fn new(ring: &'a RingConformations, net: &'a Net, radius: f64, random: Random) -> Self {
+        let sheets = net.sheets();
+        Self {
+            ring,
+            net,
+            radius,
+            random,
+            scratch: Scratch::new(ring),
+            coordinates: Vec::new(),
+            labels: Vec::new(),
+            weight: vec![0.0; sheets.pieces],
+            sheets,
+            draws: 0,
+            failures: 0,
+        }
+    }
+
+    /// Share of the draws that were given up.
+    fn given_up(&self) -> f64 {
+        self.failures as f64 / self.draws as f64
+    }
+
+    /// A whole round: every chart gives as many draws as its disc is large, `draws` those of full size.
+    fn round(&mut self, draws: usize) {
+        for (k, chart) in self.net.charts.iter().enumerate() {
+            // In proportion to the area of the disc, rounded up as often as its fraction says.
+            let share = draws as f64 * chart.scale * chart.scale;
+            let more = chart.scale < 1.0 && self.random.uniform() < share.fract();
+            for _ in 0..share as usize + usize::from(more) {
+                self.draw(k);
+            }
+        }
+    }
+
+    /// One place in the disc of a chart, lifted to the surface, which is accepted or not.
+    fn draw(&mut self, k: usize) {
+        let chart = &self.net.charts[k];
+        self.draws += 1;
+        let reach = self.radius * chart.scale * self.random.uniform().sqrt();
+        let (s, c) = libm::sincos(self.random.between(0.0, TAU));
+        if !chart.lift(self.ring, [reach * c, reach * s], &mut self.scratch) {
+            self.failures += 1;
+            return;
+        }
+        let holds = |&&other: &&u32| {
+            let other = &self.net.charts[other as usize];
+            let [a, b] = other.coordinates(&self.scratch.place);
+            a * a + b * b < (self.radius * other.scale).powi(2)
+        };
+        let cover = 1 + self.sheets.beside[k].iter().filter(holds).count();
+        let acceptance = 1.0 / cover as f64;
+        self.weight[self.sheets.piece[k] as usize] += acceptance;
+        if self.random.uniform() < acceptance {
+            self.coordinates.extend_from_slice(&self.scratch.place);
+            self.labels.push(self.sheets.piece[k]);
+        }
     }
 }

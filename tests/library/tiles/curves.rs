@@ -1,6 +1,6 @@
 //! Surfaces that cross themselves are the same in tiles, to the last bit, whatever the tiles are.
 
-use crate::same::{same, sample};
+use super::same::{same, sample};
 use crosscap::backends::euclidean::EuclideanOracle;
 use crosscap::prelude::*;
 use crosscap_algorithms::dimension::PrincipalComponents;

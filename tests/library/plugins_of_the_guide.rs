@@ -1,15 +1,15 @@
 //! The metric, the oracle, the estimator and the singularity model that the guide prints: they pass the law kit, and run together.
 
-#[path = "../examples/custom_estimator.rs"]
+#[path = "../../examples/custom_estimator.rs"]
 #[allow(dead_code)]
 mod custom_estimator;
-#[path = "../examples/custom_metric.rs"]
+#[path = "../../examples/custom_metric.rs"]
 #[allow(dead_code)]
 mod custom_metric;
-#[path = "../examples/custom_model.rs"]
+#[path = "../../examples/custom_model.rs"]
 #[allow(dead_code)]
 mod custom_model;
-#[path = "../examples/custom_oracle.rs"]
+#[path = "../../examples/custom_oracle.rs"]
 #[allow(dead_code)]
 mod custom_oracle;
 

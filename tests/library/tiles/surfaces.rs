@@ -1,6 +1,6 @@
 //! Surfaces that do not cross themselves, and what is not taken.
 
-use crate::same::{same, sample};
+use super::same::{same, sample};
 use crosscap::prelude::*;
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::surfaces::Random;

@@ -305,7 +305,7 @@ fn models_compete() {
     }
 }
 
-/// `cargo test --release --test models -- --ignored --nocapture`
+/// `cargo test --release --test library models:: -- --ignored --nocapture`
 #[test]
 #[ignore = "some minutes"]
 fn twenty_seeds() {
