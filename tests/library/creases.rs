@@ -145,11 +145,12 @@ fn what_tangent_planes_decide_is_set_with_the_rest_and_reported() {
     assert!(edges[0] < edges[1], "{edges:?}");
 }
 
-/// Creases of 60 degrees need no graph of sheets, those of 30 degrees do.
+/// Creases of 30, 45 and 60 degrees, the sharp ones among fewer points than lie beside no crease. Lengths in the charts come from tangent planes:
+/// those of paths alone refused one of these, and one was confirmed at the last attempt.
 #[test]
 fn sharp_prisms_need_no_parameters() {
-    for (angle, seed, sheets) in [(60.0, 0, false), (120.0, 2, true)] {
-        let points = prism(angle, 2000, seed);
+    for (angle, count, seed) in [(60.0, 2000, 0), (90.0, 5000, 1), (120.0, 2000, 2)] {
+        let points = prism(angle, count, seed);
         let search = Auto::default()
             .search(Input::Points(&points), &mut |asked| Pipeline::new(asked))
             .unwrap();
@@ -157,7 +158,7 @@ fn sharp_prisms_need_no_parameters() {
         assert!(passed.clone().count() > 1, "{angle}");
         for attempt in passed {
             assert_eq!(attempt.end.topology().unwrap().betti, [1, 0, 1], "{angle}");
-            assert_eq!(attempt.parameters.spaces.sheets, sheets, "{angle}");
+            assert!(attempt.parameters.spaces.planes, "{angle}");
         }
     }
 }
