@@ -23,11 +23,11 @@ const BENDING: f64 = 2.7;
 /// A sheet is flat enough for charts when its thickness is at most this share of the radius.
 const FLAT: f64 = 0.08;
 /// Where a quadratic height leaves more than this share of the distances from the plane, and flat sheets are around, what bends is an edge. Of places that looked bent
-/// none did on spheres, tori and saddles; on parabolas and waves whose bend has a radius of 2.4 spacings 0 and 0.15, of 1.7 spacings 0.03 and 0.4, of 1.2 spacings 0.6 and 0.5; at
-/// edges of 60 to 120 degrees, corners of a box and walls 0.62 to 0.79.
+/// none did on spheres and saddles, up to 0.09 on tori; on parabolas and waves whose bend has a radius of 2.4 spacings 0 and 0.15, of 1.7 spacings 0.03 and 0.4, of 1.2 spacings
+/// 0.6; at edges of 60 to 120 degrees, corners of a box and walls 0.75 to 1.
 const EDGED: f64 = 0.4;
 /// Least share of the points around that are on flat sheets, at an edge.
-const AROUND: f64 = 0.5;
+const AROUND: f64 = 0.3;
 /// One of so many of the points around is asked for that.
 const STRIDE: usize = 4;
 /// Terms of a quadratic height over a plane.

@@ -81,7 +81,7 @@ const FACES: [PieceTruth; 10] = [
 pub(super) fn cube_with_hole() -> SampleSurface {
     const INNER: [&str; 4] = ["inner left", "inner right", "inner front", "inner back"];
     let wall = |k: usize| -> Box<dyn Piece> {
-        let (axis, side) = (k / 2, if k % 2 == 0 { -HOLE } else { HOLE });
+        let (axis, side) = (k / 2, [-HOLE, HOLE][k % 2]);
         let only = |at: usize, x: f64| [0, 1, 2].map(|i| if i == at { x } else { 0.0 }).to_vec();
         Box::new(Rectangle::new(
             INNER[k],
