@@ -44,7 +44,7 @@ impl CurveGraph {
         let ends = self.free_boundary_ends(ground);
         let rows = &self.nodes.rows;
         let reach = ground.tuning.join * ground.dl;
-        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+        let mut pairs: Vec<(f64, bool, usize, usize)> = Vec::new();
         for (u, at) in unreached.iter().enumerate() {
             let row = skeleton.corner_rows()[at.corner];
             let fit = skeleton.corner_fit(at.branch.0);
@@ -60,13 +60,17 @@ impl CurveGraph {
                     out && on.is_none_or(|on| dot(&on, &way) > 0.0)
                 };
                 if d <= reach && !on_another && !self.is_stub(ground, row, end.part) && leads() {
-                    pairs.push((d, u, e));
+                    // All boundaries of a point are as far from an end: those that know their side come first, as the others may take any.
+                    pairs.push((d, side.is_none(), u, e));
                 }
             }
         }
-        pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        pairs.sort_by(|x, y| {
+            let rest = (x.1, x.2, x.3).cmp(&(y.1, y.2, y.3));
+            x.0.total_cmp(&y.0).then(rest)
+        });
         let (mut joined, mut taken) = (vec![false; unreached.len()], vec![false; ends.len()]);
-        for (d, u, e) in pairs {
+        for (d, _, u, e) in pairs {
             if !joined[u] && !taken[e] {
                 (joined[u], taken[e]) = (true, true);
                 let (own, node) = (rows.len() + unreached[u].corner, ends[e].node);
@@ -189,6 +193,15 @@ mod tests {
         // Farther away it is another boundary.
         assert_eq!(one(ray(0.0, &[[3.2, 6.0]])), 1);
         assert_eq!(one(ray(0.0, &[[0.3, 0.8], [3.2, 6.0]])), 1);
+    }
+
+    /// The other one has no points that say where it leaves the point, and would take either end.
+    #[test]
+    fn an_end_is_left_to_the_boundary_whose_stub_leads_there() {
+        let bare = ray(2.36, &[[2.96, 6.96]]);
+        let stub = ray(3.36, &[[0.3, 0.8], [2.89, 6.89]]);
+        assert_eq!(joined(&[bare.clone(), stub.clone()], &[], 0.01), 2);
+        assert_eq!(joined(&[stub, bare], &[], 0.01), 2);
     }
 
     #[test]
