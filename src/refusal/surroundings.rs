@@ -240,8 +240,8 @@ mod tests {
             [x, y, x.abs()]
         };
         let wall = |r: &mut Random| match at(r) {
-            [x, y] if x < 0.3 => [x / 0.65 - 0.3, y, 0.0],
-            [x, y] => [0.0, y, x],
+            [x, y] if x < 0.3 => [(x + 0.35) / 0.65, y, 0.0],
+            [x, y] => [0.0, y, x - 0.3],
         };
         for [bent, edged] in [
             bent_and_edged(edge, 3000, 0.15),
