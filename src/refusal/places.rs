@@ -31,15 +31,21 @@ pub(super) fn troubles(outcome: &Result<Outcome, Error>) -> Vec<Trouble> {
         Ok(outcome) => {
             let stars = outcome.failures.iter().map(of_error);
             let mut all: Vec<Trouble> = stars.take(STARS).collect();
-            // Those beyond are counted where the first ones are.
-            if let Some(first) = all.first_mut() {
-                first.count += outcome.failures.len().saturating_sub(STARS);
+            let listed = all.len();
+            for (k, star) in all.iter_mut().enumerate() {
+                star.count = part(outcome.failures.len(), listed, k);
             }
             let violations = outcome.certificate.violations();
             all.extend(violations.flat_map(|v| of_violation(v, &outcome.mesh)));
             all
         }
     }
+}
+
+/// How many of `total` places the k-th of those that are listed stands for: about as many as each other one, since what one place looks like
+/// says nothing of all.
+fn part(total: usize, listed: usize, k: usize) -> usize {
+    total * (k + 1) / listed - total * k / listed
 }
 
 fn of_error(error: &Error) -> Trouble {
@@ -77,7 +83,7 @@ fn enough(needed: f64) -> f64 {
     (2.0 + (4.0 + needed).sqrt()).powi(2)
 }
 
-/// One trouble for each place of a violation that is listed; the first stands for those that are not.
+/// One trouble for each place of a violation that is listed; they stand for those that are not as well.
 fn of_violation<'a>(
     violation: &'a Violation,
     mesh: &'a Mesh,
@@ -104,7 +110,8 @@ fn of_violation<'a>(
     } else {
         violation.kind.meaning()
     };
-    let unlisted = violation.count.saturating_sub(violation.places.len());
+    let places = violation.places.len().max(1);
+    let total = violation.count.max(places);
     let whole = violation.places.is_empty().then_some(None);
     let listed = violation.places.iter().map(|&place| Some(place));
     let all = listed.chain(whole).enumerate();
@@ -117,7 +124,7 @@ fn of_violation<'a>(
         },
         kind,
         measure: None,
-        count: if k == 0 { 1 + unlisted } else { 1 },
+        count: part(total, places, k),
         detail: detail.into(),
     })
 }
@@ -133,4 +140,19 @@ fn row(place: Place, mesh: &Mesh) -> Option<usize> {
     };
     let row = *mesh.point_index.get(vertex? as usize)?;
     usize::try_from(row).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn listed_places_stand_for_all_in_equal_parts() {
+        for (total, listed) in [(7, 7), (150, 60), (1, 1), (61, 60)] {
+            let parts: Vec<usize> = (0..listed).map(|k| part(total, listed, k)).collect();
+            assert_eq!(parts.iter().sum::<usize>(), total);
+            let (least, most) = (parts.iter().min().unwrap(), parts.iter().max().unwrap());
+            assert!(*least > 0 && most - least < 2, "{parts:?}");
+        }
+    }
 }

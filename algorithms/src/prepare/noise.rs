@@ -74,11 +74,12 @@ impl Noise {
             Some(low / at_lower_quartile(freedom(tuning.sizes[size], n)))
         };
         for (size, &neighbors) in tuning.sizes.iter().enumerate().take(sizes) {
-            let (Some(scattered), Some(extent)) = (scatter(size), quantile(values(size, 1), 0.5))
-            else {
+            let usual = [0, 1].map(|which| quantile(values(size, which), 0.5));
+            let (Some(scattered), [Some(thickness), Some(extent)]) = (scatter(size), usual) else {
                 continue;
             };
-            if scattered > tuning.thin * tuning.thin * extent {
+            // Half of the neighborhoods are thin, or this is no surface.
+            if thickness > tuning.thin * tuning.thin * extent {
                 continue;
             }
             let wider = (size + 1 < sizes).then(|| scatter(size + 1)).flatten();
