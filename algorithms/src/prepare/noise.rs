@@ -20,7 +20,7 @@ const GROWTH: f64 = 8.0;
 /// which the neighborhood is thin: a ball as small as the noise has no normal.
 ///
 /// Noise is everywhere, and creases and crossings are not, so that the scatter is read where it is small: at the
-/// lower quartile of the places, which for noise alone is a known part of the whole ([`at_lower_quartile`]). (Of a prism of
+/// lower quartile of the places, which for noise alone is a known part of the whole (`at_lower_quartile`). (Of a prism of
 /// 2,000 points more than half of the places have a crease among their 24 nearest points, and the median took it for noise.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
