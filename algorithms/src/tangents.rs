@@ -146,3 +146,45 @@ impl TangentField {
         believed.then_some(length)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::execute::Serial;
+    use crate::metric::{BruteForceOracle, Euclidean};
+    use crate::surfaces::{SampleSurface, Sampling};
+
+    #[test]
+    fn lengths_on_a_sphere_are_those_of_arcs() {
+        let surface = SampleSurface::find("sphere").unwrap();
+        let cloud = surface.sample(&Sampling::new(1500, 5)).unwrap().points;
+        let oracle = BruteForceOracle::new(Euclidean::new(cloud.clone()));
+        let tuning = TangentTuning::MEASURED;
+        let field = TangentField::new(cloud.clone().into(), &oracle, &tuning, &Serial).unwrap();
+        let (mut errors, mut asked) = (Vec::new(), 0);
+        for a in (0..1500).step_by(7) {
+            for b in (0..1500).step_by(11).filter(|&b| b != a) {
+                let arc = 2.0 * (0.5 * cloud.squared_distance(a, b).sqrt()).min(1.0).asin();
+                // As much too long as paths are.
+                let length = field.length(a, b, 1.06 * arc);
+                assert_eq!(length, field.length(b, a, 1.06 * arc));
+                // A chord leaves the tangent planes at its ends by half of the angle of the arc.
+                if arc > 2.0 {
+                    assert_eq!(length, None, "{arc}");
+                } else if arc < 0.8 {
+                    asked += 1;
+                    errors.extend(length.map(|length| (length / arc - 1.0).abs()));
+                }
+            }
+        }
+        errors.sort_unstable_by(f64::total_cmp);
+        // The others are at points whose plane is off.
+        assert!(
+            asked > 1000 && 5 * errors.len() > 4 * asked,
+            "{} of {asked}",
+            errors.len()
+        );
+        let [usual, nearly_all] = [0.5, 0.95].map(|q| errors[(q * errors.len() as f64) as usize]);
+        assert!(usual < 0.005 && nearly_all < 0.02, "{usual} {nearly_all}");
+    }
+}

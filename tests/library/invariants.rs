@@ -1,12 +1,12 @@
 //! What a reconstruction must not depend on.
 
+use crate::FRONT;
 use crosscap::prelude::*;
 use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
-use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::TwoPlanes;
 use crosscap_algorithms::space::Space;
 use crosscap_algorithms::stratify::{
@@ -14,8 +14,6 @@ use crosscap_algorithms::stratify::{
     WaistProducer,
 };
 use crosscap_algorithms::surfaces::{Random, RigidMotion, embed, scaled};
-use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
-use crosscap_algorithms::tuning::FrontTuning;
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::linear_program::LinearProgramTest;
 use crosscap_core::{Row, Scalar, StratifiedLandmarks, Triangulator, squared_distance};
@@ -393,16 +391,7 @@ fn complex_of(case: &Case, waist: &StratifiedLandmarks<f64>) -> Complex {
 
 /// The same in the precision of the waist.
 fn triangulated<S: Scalar>(waist: &StratifiedLandmarks<S>) -> Complex {
-    let triangulator = AdvancingFront {
-        chart: &ClassicalScaling,
-        test: &PlanarPredicate,
-        rule: &LargestAngle,
-        largest_circumradius: f64::INFINITY,
-        repair: true,
-        rules: Rules::MEASURED,
-        tuning: &FrontTuning::MEASURED,
-    };
-    triangulator.triangulate(waist).unwrap().complex
+    FRONT.triangulate(waist).unwrap().complex
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
+use crate::FRONT;
 use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::dimension::{
     CorrelationDimension, MaximumLikelihood, PackingNumbers, PrincipalComponents, SpanningTree,
@@ -16,8 +17,7 @@ use crosscap_algorithms::singularity::{
     BareCurve, Book, Boundary, BoundaryCorner, ConePoint, CurveOnSheet, CurveThroughSheet,
     IsolatedCrossing, OneSheet, TriplePoint, TwoPlanes, YJunction,
 };
-use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, MinimumCircumradius, Rules};
-use crosscap_algorithms::tuning::FrontTuning;
+use crosscap_algorithms::triangulate::{LargestAngle, MinimumCircumradius};
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric};
 use crosscap_backends::linear_program::LinearProgramTest;
@@ -266,17 +266,6 @@ fn a_ball_measured_from_the_center_breaks_a_law() {
     let broken: Vec<&str> = found.broken().map(|b| b.law.name).collect();
     assert_eq!(broken, ["about"]);
 }
-
-/// With the parts of the pipeline.
-const FRONT: AdvancingFront<'static> = AdvancingFront {
-    chart: &ClassicalScaling,
-    test: &PlanarPredicate,
-    rule: &LargestAngle,
-    largest_circumradius: f64::INFINITY,
-    repair: true,
-    rules: Rules::MEASURED,
-    tuning: &FrontTuning::MEASURED,
-};
 
 /// Pairs of triangles are quickly tried.
 fn many() -> Settings {

@@ -18,3 +18,19 @@ mod spaces;
 mod surfaces;
 mod tiles;
 mod without_parameters;
+
+use crosscap_algorithms::chart::ClassicalScaling;
+use crosscap_algorithms::predicate::PlanarPredicate;
+use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
+use crosscap_algorithms::tuning::FrontTuning;
+
+/// The triangulator with the parts of the pipeline.
+const FRONT: AdvancingFront<'static> = AdvancingFront {
+    chart: &ClassicalScaling,
+    test: &PlanarPredicate,
+    rule: &LargestAngle,
+    largest_circumradius: f64::INFINITY,
+    repair: true,
+    rules: Rules::MEASURED,
+    tuning: &FrontTuning::MEASURED,
+};

@@ -1,15 +1,12 @@
 //! Spaces that are no Euclidean ones, and plug-ins that do what the default does.
 
+use crate::FRONT;
 use crosscap::prelude::*;
-use crosscap_algorithms::chart::ClassicalScaling;
 use crosscap_algorithms::dimension::PrincipalComponents;
 use crosscap_algorithms::metric::{BruteForceOracle, Euclidean};
-use crosscap_algorithms::predicate::PlanarPredicate;
 use crosscap_algorithms::singularity::{TriplePoint, TwoPlanes};
 use crosscap_algorithms::stratify::Cells;
 use crosscap_algorithms::surfaces::Random;
-use crosscap_algorithms::triangulate::{AdvancingFront, LargestAngle, Rules};
-use crosscap_algorithms::tuning::FrontTuning;
 use crosscap_backends::files::Distances;
 use crosscap_core::execute::Execute;
 use crosscap_core::{
@@ -131,16 +128,7 @@ struct Front;
 
 impl Triangulator<f64> for Front {
     fn triangulate(&self, waist: &StratifiedLandmarks<f64>) -> Result<Triangulation, Error> {
-        let front = AdvancingFront {
-            chart: &ClassicalScaling,
-            test: &PlanarPredicate,
-            rule: &LargestAngle,
-            largest_circumradius: f64::INFINITY,
-            repair: true,
-            rules: Rules::MEASURED,
-            tuning: &FrontTuning::MEASURED,
-        };
-        front.triangulate(waist)
+        FRONT.triangulate(waist)
     }
     fn name(&self) -> &str {
         "front"

@@ -56,9 +56,12 @@ impl Laid<'_> {
             let (sin, cos) = libm::sincos(turn);
             self.settled([cos * out[0] - sin * out[1], sin * out[0] + cos * out[1]])
         });
-        begun.reduce(|best, next| match next.beyond > best.beyond {
-            true => next,
-            false => best,
+        begun.reduce(|best, next| {
+            if next.beyond > best.beyond {
+                next
+            } else {
+                best
+            }
         })
     }
 

@@ -46,9 +46,10 @@ impl Piece for Frame {
     }
     fn closed_form_distance(&self, place: &[f64]) -> Option<f64> {
         let [x, y] = [place[0].abs(), place[1].abs()];
-        let beside = match x.max(y) < HOLE {
-            true => HOLE - x.max(y),
-            false => (x - 1.0).max(0.0).hypot((y - 1.0).max(0.0)),
+        let beside = if x.max(y) < HOLE {
+            HOLE - x.max(y)
+        } else {
+            (x - 1.0).max(0.0).hypot((y - 1.0).max(0.0))
         };
         Some(beside.hypot(place[2] - self.height))
     }
