@@ -78,8 +78,6 @@ def test_local_dimensions_are_the_same(torus, estimator):
 
 
 def test_what_tiles_cannot_be_asked_is_refused(torus):
-    with pytest.raises(ValueError, match="boundaries are not looked for in tiles"):
-        crosscap.tiles.reconstruct(torus, EPS, DL, models=["two-planes", "boundary"])
     with pytest.raises(ValueError, match="expected a list of names"):
         crosscap.tiles.reconstruct(torus, EPS, DL, models="auto")
     with pytest.raises(ValueError, match="without copies"):
@@ -114,6 +112,32 @@ def test_surfaces_that_cross_give_the_same_bytes(spheres, whole_spheres):
 def test_workers_give_the_same_bytes_of_surfaces_that_cross(spheres, whole_spheres, cluster):
     found = crosscap.dask.reconstruct(spheres, 0.3, 0.15, tiles=4, **CROSSING)
     assert told(found) == told(whole_spheres)
+
+
+BOUNDED = {"models": ["two-planes", "boundary", "curve-through-sheet", "boundary-corner"], "random_state": 3}
+
+
+@pytest.fixture(scope="module")
+def strip():
+    return crosscap.sample("moebius", 5000, random_state=7).points
+
+
+@pytest.fixture(scope="module")
+def whole_strip(strip):
+    return crosscap.SurfaceReconstruction(0.3, 0.15, prepare=False, **BOUNDED).fit(strip)
+
+
+def test_boundaries_give_the_same_bytes(strip, whole_strip):
+    assert whole_strip.verdict_ == "verified"
+    assert whole_strip.betti_ == (1, 1, 0)
+    found = crosscap.tiles.reconstruct(strip, 0.3, 0.15, tiles=5, n_jobs=2, **BOUNDED)
+    assert told(found) == told(whole_strip)
+    assert found.report_["models"] == whole_strip.report_["models"]
+
+
+def test_workers_give_the_same_bytes_of_boundaries(strip, whole_strip, cluster):
+    found = crosscap.dask.reconstruct(strip, 0.3, 0.15, tiles=4, **BOUNDED)
+    assert told(found) == told(whole_strip)
 
 
 @pytest.fixture(scope="module")

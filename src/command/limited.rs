@@ -173,6 +173,7 @@ impl Limited {
         let chosen = Parameters {
             seed: pinned.seed.unwrap_or_default(),
             surface: pinned.surface == Some(true),
+            models: pinned.parameters(eps, dl).models,
             ..Parameters::new(eps, dl)
         };
         let bare = Pinned {
@@ -181,6 +182,7 @@ impl Limited {
             eps: pinned.eps,
             dl: pinned.dl,
             surface: pinned.surface,
+            models: pinned.models.clone(),
             method: Some(Method::Cells),
             ..Pinned::default()
         };
@@ -188,7 +190,7 @@ impl Limited {
         let command = match *pinned == bare {
             true => format!("`{}`", repeat::command(pinned, &chosen, false)),
             false => format!(
-                "--eps {eps} --dl {dl} and no other choice (--surface where no crossings are)"
+                "--eps {eps} --dl {dl} and no other choice but --models, and --surface where no crossings are"
             ),
         };
         let chosen = match pinned.complete() {
@@ -196,7 +198,7 @@ impl Limited {
             None => format!(" (lengths from {} of the points)", self.sample.len()),
         };
         Failure::usage(format!(
-            "{}: not in tiles: {why}; for a surface without boundary: {command}{chosen}; else --memory-limit {} or more, or \
+            "{}: not in tiles: {why}; in tiles: {command}{chosen}; else --memory-limit {} or more, or \
              fewer points",
             self.rows.path().display(),
             enough(self.in_memory)

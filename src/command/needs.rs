@@ -3,11 +3,15 @@
 //! Amounts bound what runs held at most (`/usr/bin/time -v`, one thread) from above. Measured on a torus and on two spheres that cross, in R^3 and
 //! turned into R^24, 10^5 to 10^6 points, 600 to 31,000 landmarks; the table is in the guide, *Clouds in tiles*.
 
-use crosscap::pipeline::{Parameters, Pipeline};
+use crosscap::pipeline::Pipeline;
 use crosscap::{MetricName, Pinned, Spaces};
 use crosscap_algorithms::execute::Serial;
 use crosscap_algorithms::landmarks::RandomGreedy;
 use crosscap_algorithms::moments::MomentTree;
+use crosscap_algorithms::stratify::AnalysisTuning;
+use crosscap_algorithms::tiles::{
+    Answer, BallQuestion, LookQuestion, Question, Tiles, TilesInMemory, Tiling,
+};
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::tiles::bytes_to_divide;
 use crosscap_core::{Error, LandmarkSelector, PointCloud};
@@ -49,6 +53,8 @@ const EXCERPT_COORDINATE: f64 = 60.0;
 const SAMPLED_BALL: f64 = 40.0;
 /// A crossing shows in balls about points up to so many radii from it, or farther.
 const SHOWN_FROM: f64 = 0.6;
+/// Models say of points up to so many radii from a boundary that it is near.
+const SEEN_FROM: f64 = AnalysisTuning::MEASURED.witness_reach;
 
 const MIB: f64 = (1 << 20) as f64;
 
@@ -121,29 +127,44 @@ impl Needs {
         (self.in_one_place() + self.points as f64 * point) as u64
     }
 
-    /// About how many points the excerpt has that curves are laid in. Balls of a sample have to be larger, and show a crossing from farther away.
+    /// About how many points the excerpt has that curves are laid in. Balls of a sample have to be larger, and show a crossing or a boundary from farther away.
     pub fn excerpt(&self, sample: &PointCloud<f64>, pipeline: &Pipeline) -> Result<usize, Error> {
-        let Parameters {
-            eps, dt, surface, ..
-        } = *pipeline.parameters();
-        if surface {
+        let Some(question) = pipeline.balls() else {
             return Ok(0);
+        };
+        let wider = match sample.len() < self.points {
+            true => wider(sample, &question)?,
+            false => 1.0,
+        };
+        let nearer = (wider - 1.0) * question.eps;
+        let (reach, least) = (pipeline.excerpt_reach(), question.eps);
+        let question = BallQuestion {
+            eps: wider * question.eps,
+            least: 0,
+            looks: question.looks.map(|looks| LookQuestion {
+                dp: wider * looks.dp,
+                ep: wider * looks.ep,
+                ..looks
+            }),
+            ..question
+        };
+        let whole = Tiling::new(sample, 1);
+        let tiles = TilesInMemory::new(sample, &whole, question.eps, 0, &Serial)?;
+        let mut near = vec![false; sample.len()];
+        for answer in tiles.ask(&Question::Balls(question))? {
+            let Answer::Balls(own) = answer else { continue };
+            let centers = own.centers.rows().iter().zip(&own.balls);
+            for (curved, share) in [(true, SHOWN_FROM), (false, SEEN_FROM)] {
+                let of_kind = centers.clone().filter(|(_, ball)| (ball[1] != 2) == curved);
+                let rows: Vec<usize> = of_kind.map(|(row, _)| row.index()).collect();
+                let tree = EuclideanOracle::new(sample.select(&rows))?;
+                let reach = (reach - share * nearer).max(least);
+                for (found, place) in near.iter_mut().zip(sample.iter()) {
+                    *found |= tree.is_near(place, reach);
+                }
+            }
         }
-        let tree = MomentTree::new(sample)?;
-        let of = |eps: f64| tree.settled_dimensions(eps, dt, &Serial);
-        let mut balls = of(eps)?;
-        let total: f64 = balls.iter().map(|ball| f64::from(ball.neighbors)).sum();
-        let fuller = SAMPLED_BALL * balls.len() as f64 / total;
-        let mut reach = pipeline.excerpt_reach();
-        if fuller > 1.0 && sample.len() < self.points {
-            let wide = eps * fuller.sqrt();
-            balls = of(wide)?;
-            reach = (reach - SHOWN_FROM * (wide - eps)).max(eps);
-        }
-        let curved = balls.iter().enumerate().filter(|x| x.1.dimension != 2);
-        let curved: Vec<usize> = curved.map(|x| x.0).collect();
-        let near = EuclideanOracle::new(sample.select(&curved))?;
-        let count = sample.iter().filter(|p| near.is_near(p, reach)).count();
+        let count = near.iter().filter(|&&near| near).count();
         Ok((count as f64 / sample.len() as f64 * self.points as f64) as usize)
     }
 
@@ -170,6 +191,15 @@ impl Needs {
         let landmark = LANDMARK + LANDMARK_COORDINATE * self.dimension as f64;
         ALWAYS + LOOKED_AT * looked_at + landmark * self.landmarks
     }
+}
+
+/// By how much balls of a sample have to be larger to say something, at least 1.
+fn wider(sample: &PointCloud<f64>, question: &BallQuestion) -> Result<f64, Error> {
+    let tree = MomentTree::new(sample)?;
+    let balls = tree.settled_dimensions(question.eps, question.dt, &Serial)?;
+    let total: f64 = balls.iter().map(|ball| f64::from(ball.neighbors)).sum();
+    let fuller = SAMPLED_BALL * balls.len() as f64 / total;
+    Ok(fuller.sqrt().max(1.0))
 }
 
 /// About how many landmarks a cloud has: as many as a sample, where that is dense beside them; else from landmarks farther

@@ -6,7 +6,7 @@ use super::progress::Progress;
 use super::report::{PluginNames, Report};
 use super::rows::LEAST_POINTS;
 use super::tiled::Tiled;
-use super::{Method, Outcome, Parts, Pipeline, Stage};
+use super::{Outcome, Parts, Pipeline, Stage};
 use crate::watched::{Distortion, Watched};
 use crosscap_algorithms::certificate::Verdict;
 use crosscap_algorithms::dimension::PrincipalComponents;
@@ -15,60 +15,19 @@ use crosscap_algorithms::stratify::{
     Analysis, AnalysisOptions, Analyzer, ChartSpace, Cut, ModelCounts, StratifyOptions,
 };
 use crosscap_algorithms::tiles::{
-    BallQuestion, Candidates, Curves, Excerpt, Gathered, Question, Tiles, landmarks,
+    Candidates, Curves, Excerpt, Gathered, Question, Tiles, landmarks,
 };
 use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_core::{DimensionEstimator, Error, LocalChart};
 
 impl Pipeline {
-    /// How far the points of every tile have to go beyond its box for [`reconstruct_tiles`](Self::reconstruct_tiles), unit of
-    /// the data.
-    pub fn tile_halo(&self) -> f64 {
-        let Parts {
-            parameters, tuning, ..
-        } = &self.parts;
-        let reach = crosscap_algorithms::tiles::halo(
-            parameters.dl,
-            parameters.chart_radius(),
-            &tuning.cells,
-        );
-        let reach = match parameters.surface {
-            true => reach,
-            false => reach.max(parameters.eps),
-        };
-        // Rounding of the sum must not make the halo too small for itself.
-        reach * (1.0 + 1e-9)
-    }
-
-    /// How far from balls that are not 2-dimensional the points are gathered that curves are laid in, at first, unit of the data; where it is too
-    /// little they are gathered once more.
-    ///
-    /// Beside the curves fits label points, charts that reach these belong to landmarks beyond, and what is in these charts has to be known with its nearest
-    /// neighbors.
-    pub fn excerpt_reach(&self) -> f64 {
-        let Parts {
-            parameters, tuning, ..
-        } = &self.parts;
-        let charts = 2.0 * parameters.chart_radius();
-        let gaps = (tuning.cells.curve_gap + 1.0) * parameters.dl;
-        charts + gaps + tuning.analysis.label_margin * parameters.eps
-    }
-
-    /// Whether tiles can be asked for all that this pipeline wants to know.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] for the first thing that they cannot.
-    pub fn takes_tiles(&self) -> Result<(), Error> {
-        self.parts.takes_tiles()
-    }
-
     /// Reconstructs the surface that a cloud was sampled from which is in `tiles`, made with the
     /// [seed](super::Parameters::seed) and the [halo](Self::tile_halo) of this pipeline. The mesh and the verdict are those of
     /// [`reconstruct`](Self::reconstruct) on the whole cloud, whatever the tiles are.
     ///
     /// Held in one place are landmarks, their waist and their mesh, as many points as the certificate looks at, and four bytes a
-    /// point for whoever makes the tiles. Only surfaces without curves: [`surface`](super::Parameters::surface) has to be set, and no boundary,
-    /// metric, stratifier, selector or oracle but the usual ones.
+    /// point for whoever makes the tiles, and where curves or boundaries are looked for the points about them. No metric, estimator, stratifier,
+    /// selector or oracle but the usual ones, and no boundary that is given.
     ///
     /// # Errors
     /// [`Error::Parameter`] for what tiles cannot be asked about, [`Error::Shape`] for fewer than 8 points or for points of which two are at
@@ -96,9 +55,9 @@ impl Pipeline {
         progress.enter(Stage::Index);
         look_over(tiles)?;
         let asked = Asked { parts, tiles };
-        let mut outcome = match parts.parameters.surface {
-            true => asked.finished(None, &mut progress)?,
-            false => asked.with_curves(reach, &mut progress)?,
+        let mut outcome = match parts.looks_at_balls() {
+            true => asked.with_curves(reach, &mut progress)?,
+            false => asked.finished(None, &mut progress)?,
         };
         outcome.report.seconds = progress.finish();
         Ok(outcome)
@@ -119,7 +78,7 @@ struct Found<'f> {
 }
 
 impl Asked<'_> {
-    /// The outcome where curves are looked for, in an excerpt that is made wider until it knows all that is asked of it.
+    /// The outcome where curves or boundaries are looked for, in an excerpt that is made wider until it knows all that is asked of it.
     fn with_curves(&self, mut reach: f64, progress: &mut Progress<'_>) -> Result<Outcome, Error> {
         progress.enter(Stage::Neighborhoods);
         let candidates = Candidates::of(self.tiles, self.parts.balls())?;
@@ -151,7 +110,7 @@ impl Asked<'_> {
         let options = AnalysisOptions {
             eps: parameters.eps,
             radii: None,
-            surface: false,
+            surface: parameters.surface,
             boundary: Vec::new(),
         };
         let analysis = analyzer.analyze_part(&options, excerpt.balls());
@@ -174,7 +133,7 @@ impl Asked<'_> {
     /// An error with rows of the input instead of those of an excerpt.
     fn in_input(&self, mut error: Error, excerpt: &Excerpt) -> Error {
         if let Error::Dimension { point, .. } | Error::Law { point, .. } = &mut error
-            && let Some(&row) = excerpt.points().rows().get(*point)
+            && let Some(&row) = excerpt.rows().get(*point)
         {
             *point = self.tiles.input_row(row);
         }
@@ -214,7 +173,7 @@ impl Asked<'_> {
             report.curve_points = analysis.curve_points();
             report.unexplained = analysis.unexplained().len();
             report.models = ModelCounts::with_later(analysis.models(), &made.waist.models);
-            report.plugins.estimator = Some(found.estimator.into());
+            report.plugins.estimator = (!parts.parameters.surface).then(|| found.estimator.into());
         }
         Ok(Outcome {
             failures,
@@ -231,78 +190,6 @@ impl Asked<'_> {
 }
 
 impl Parts {
-    /// The balls that curves are looked for in.
-    fn balls(&self) -> BallQuestion {
-        BallQuestion {
-            eps: self.parameters.eps,
-            dt: self.parameters.dt,
-            least: self.tuning.analysis.least_neighbors,
-        }
-    }
-}
-
-impl Parts {
-    /// # Errors
-    /// [`Error::Parameter`] for what is not asked of tiles.
-    fn takes_tiles(&self) -> Result<(), Error> {
-        let p = &self.parameters;
-        let finds_boundary = self.models.all().iter().any(|m| m.finds_boundary());
-        let own_metric = self.analysis_metric.is_some() || self.chart_metric.is_some();
-        let usual = |usual: bool| if usual { "usual" } else { "another" };
-        let straight = p.spaces.are_usual() && !own_metric;
-        let cells = p.method == Method::Cells && self.stratifier.name() == "cells";
-        let random = self.selector.name() == "random";
-        let alone = p.boundary.is_empty() && !finds_boundary;
-        let everywhere = (self.models.all().iter()).find(|m| !p.surface && m.applies_to(2));
-        let taken = [
-            (
-                "boundary",
-                alone,
-                "looked for or given".into(),
-                "none, since boundaries are not looked for in tiles (a cloud in memory is searched for them)".into(),
-            ),
-            (
-                "models",
-                everywhere.is_none(),
-                everywhere.map_or(String::new(), |model| model.name().into()),
-                "models of curves in which sheets meet (two-planes): this one is asked about every point, which tiles are not".into(),
-            ),
-            (
-                "estimator",
-                self.estimator.is_none(),
-                "another".into(),
-                "none: tiles tell dimensions by principal components".into(),
-            ),
-            (
-                "metric",
-                straight,
-                usual(straight).into(),
-                "straight lines, which tiles know".into(),
-            ),
-            ("method", cells, usual(cells).into(), "that of cells".into()),
-            (
-                "selector",
-                random,
-                usual(random).into(),
-                "random, the order that tiles have".into(),
-            ),
-            (
-                "oracle",
-                self.oracle.is_none(),
-                "another".into(),
-                "none: tiles are their own".into(),
-            ),
-        ];
-        match taken.into_iter().find(|one| !one.1) {
-            None => Ok(()),
-            Some((name, _, value, expected)) => Err(Error::Parameter {
-                name,
-                value,
-                expected,
-            }),
-        }
-    }
-
     /// What the stages counted.
     fn report_of_tiles(
         &self,

@@ -1,5 +1,6 @@
 //! From a point cloud to a verified surface: the parts put together with good defaults.
 
+mod askable;
 mod by_tiles;
 mod making;
 mod mesh;

@@ -189,7 +189,7 @@ impl Maker for Tiled<'_> {
         let options = CertificateOptions {
             landmark_separation: Some(dl),
             special_points,
-            closed: true,
+            closed: parts.is_closed(),
             limits: parts.limits(),
             ..CertificateOptions::default()
         };

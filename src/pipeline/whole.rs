@@ -73,8 +73,7 @@ impl Maker for Whole<'_> {
             separation_scale: prepared.engines.scale(),
             unused_landmarks: &prepared.rows.in_input(dropped),
             special_points,
-            closed: parts.parameters.boundary.is_empty()
-                && !parts.models.all().iter().any(|m| m.finds_boundary()),
+            closed: parts.is_closed(),
             faithful: parts.parameters.spaces.metric != MetricName::Lifted,
             limits: parts.limits(),
             ..CertificateOptions::default()

@@ -46,13 +46,10 @@ fn a_cloud_that_does_not_fit_is_worked_on_in_tiles() {
         .complains("looks at all points together")
         .complains("--memory-limit 258MiB --eps ")
         .complains("else --memory-limit");
-    room.run("reconstruct p.npy -o m.npz --eps 0.6 --dl 0.3 --models auto --memory-limit 258MiB")
-        .expect(2)
-        .complains("boundaries are not looked for in tiles")
-        .complains("--eps 0.6 --dl 0.3 and no other choice");
     room.run(&format!("{run} --metric geodesic --memory-limit 258MiB"))
         .expect(2)
-        .complains("parameter metric");
+        .complains("parameter metric")
+        .complains("--eps 0.6 --dl 0.3 and no other choice but --models");
     room.run(&format!("{run} --memory-limit 20MiB"))
         .expect(2)
         .complains("in tiles, too");

@@ -34,7 +34,7 @@ mod waist;
 pub use crate::tuning::{
     AnalysisTuning, CellTuning, EndTuning, RefinementTuning, SkeletonTuning, Tuning,
 };
-pub use analysis::{Analysis, AnalysisOptions, Analyzer, KnownBalls, ModelCounts};
+pub use analysis::{Analysis, AnalysisOptions, Analyzer, KnownBalls, ModelCounts, Seen};
 pub use charts::ChartSpace;
 pub use producer::WaistProducer;
 pub use published::{Published, PublishedCut, PublishedMethod};

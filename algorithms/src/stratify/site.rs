@@ -1,9 +1,10 @@
 //! Where a point of the cloud is: inside a cell, or on a stratum of lower dimension.
 
 use crosscap_core::Row;
+use serde::{Deserialize, Serialize};
 
 /// A kind of stratum of dimension 0 or 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum StratumKind {
     /// A curve that a singularity model found.
     Curve,
@@ -14,7 +15,7 @@ pub enum StratumKind {
 }
 
 /// The fit that put a point on its stratum.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FitUsed {
     /// Position of the model among those of the analysis.
     pub model: u8,
@@ -23,7 +24,7 @@ pub struct FitUsed {
 }
 
 /// What is known of a point on a stratum of dimension 0 or 1.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct On {
     /// Which kind of stratum.
     pub kind: StratumKind,

@@ -1,5 +1,6 @@
 //! Neighborhoods of landmarks, tile by tile, where no curves are near.
 
+use super::known::UpToHalo;
 use super::question::CellQuestion;
 use super::tile::{ROUNDING, Tile};
 use crate::dimension::PrincipalComponents;
@@ -8,10 +9,7 @@ use crate::metric::Euclidean;
 use crate::space::Space;
 use crate::stratify::{Analyzer, ChartSpace, Cut, StratifyOptions};
 use crate::tuning::{CellTuning, Tuning};
-use crosscap_core::{
-    CellNeighborhood, Error, Landmark, Neighbor, NeighborhoodOracle, Row, Table, squared_distance,
-};
-use std::sync::OnceLock;
+use crosscap_core::{CellNeighborhood, Error, Landmark, Row, Table};
 
 /// How far from a landmark the points lie that its neighborhood depends on: a chart as far as it may be widened, and the
 /// nearest neighbors of what is in it, which are within a separation.
@@ -44,10 +42,7 @@ pub(super) fn neighborhoods(
         return Ok(Default::default());
     }
     let metric = Euclidean::new(tile.points().clone());
-    let oracle = UpToHalo {
-        tile,
-        short: OnceLock::new(),
-    };
+    let oracle = UpToHalo::new(tile);
     // Asked of nothing: there are no curves to look for.
     let estimator = PrincipalComponents::new(0.5)?;
     let tuning = &Tuning {
@@ -68,63 +63,11 @@ pub(super) fn neighborhoods(
     };
     let cut = Cut::among(&analyzer, ChartSpace::Places, rows, &options)?;
     let (found, radii) = cut.neighborhoods(&own)?;
-    if let Some(short) = oracle.short.into_inner() {
-        return Err(short);
-    }
+    oracle.sufficed()?;
     let name = |k: Landmark| known[k.index()];
     let named = found.into_iter().map(|one| {
         let members = one.members().iter().copied().map(name);
         CellNeighborhood::new(name(one.center()), members)
     });
     Ok((named.collect(), radii))
-}
-
-/// Nearest neighbors among the points of a tile, as far as it can know them.
-struct UpToHalo<'a> {
-    tile: &'a Tile,
-    /// The first question that it could not answer.
-    short: OnceLock<Error>,
-}
-
-impl NeighborhoodOracle for UpToHalo<'_> {
-    type Scalar = f64;
-
-    fn len(&self) -> usize {
-        self.tile.len()
-    }
-
-    fn within(&self, center: usize, radius: f64, out: &mut Vec<Neighbor<f64>>) {
-        out.clear();
-        let place = self.tile.place(Row::new(center));
-        self.tile.within(place, radius, |row| {
-            out.push(Neighbor {
-                index: row.index(),
-                distance: squared_distance(place, self.tile.place(row)).sqrt(),
-            });
-        });
-        out.sort_by(|a, b| {
-            a.distance
-                .total_cmp(&b.distance)
-                .then(a.index.cmp(&b.index))
-        });
-    }
-
-    fn nearest(&self, center: usize, count: usize, out: &mut Vec<Neighbor<f64>>) {
-        let row = Row::new(center);
-        let known = self.tile.known(row);
-        self.within(center, known.max(0.0), out);
-        if out.len() < count {
-            let _ = self.short.set(Error::SparseNeighborhood {
-                point: self.tile.cloud_row(row).index(),
-                found: out.len(),
-                needed: count,
-                parameter: "dl",
-            });
-        }
-        out.truncate(count);
-    }
-
-    fn name(&self) -> &str {
-        "tile"
-    }
 }

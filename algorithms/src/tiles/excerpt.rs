@@ -1,6 +1,6 @@
 //! The part of a cloud that its curves depend on, in one place.
 //!
-//! Curves are found from the balls that are not 2-dimensional, and no step of their analysis looks farther than a few radii
+//! Curves are found from the balls that are not 2-dimensional or show more than a sheet, and no step of their analysis looks farther than a few radii
 //! from one of them. So the points that are as near as that to such a ball are an excerpt on which the analysis says what it says
 //! of the whole cloud, to the last bit: rows keep their order, distances are those of the same coordinates, and what is a number of the whole cloud is
 //! given ([`KnownBalls`]). Whether the excerpt was wide enough is not assumed: every question is compared with how far all points about its
@@ -10,8 +10,9 @@ use super::gathered::Gathered;
 use super::question::{Answer, BallQuestion, Question, Tiles};
 use super::row::CloudRow;
 use crate::balls::BallTree;
-use crate::stratify::KnownBalls;
+use crate::stratify::{KnownBalls, ModelCounts, Seen};
 use crosscap_core::{BallDimension, Error, Neighbor, NeighborhoodOracle, PointCloud, Row, Table};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Rounding of lengths that are compared with the reach of an excerpt.
@@ -19,13 +20,15 @@ const ROUNDING: f64 = 1e-9;
 /// How much wider than what was missing an excerpt is made.
 const SPARE: f64 = 1.05;
 
-/// The balls of a cloud that are not 2-dimensional.
+/// The balls of a cloud that are not 2-dimensional, or show more than a sheet.
 #[derive(Clone, Debug)]
 pub struct Candidates {
     /// Their centers, in the order of their rows.
     pub centers: Gathered,
-    /// How many points they hold, and their dimensions.
-    balls: Vec<BallDimension>,
+    /// How many points they hold, their dimensions, and what models see in those that are 2-dimensional.
+    balls: Vec<(BallDimension, Option<Seen>)>,
+    /// What became of the models.
+    models: Vec<ModelCounts>,
     /// Number of points of the cloud.
     of: usize,
     /// Mean number of points of a ball.
@@ -40,18 +43,24 @@ impl Candidates {
     pub fn of(tiles: &dyn Tiles, question: BallQuestion) -> Result<Self, Error> {
         let needed = question.least;
         let mut centers = Gathered::new(tiles.dimension());
-        let mut balls: Vec<(CloudRow, BallDimension)> = Vec::new();
+        let mut balls: Vec<(CloudRow, (BallDimension, Option<Seen>))> = Vec::new();
+        let mut models: Vec<ModelCounts> = Vec::new();
         let (mut neighbors, mut sparse) = (0, None::<(CloudRow, u32)>);
         for answer in tiles.ask(&Question::Balls(question))? {
             let Answer::Balls(own) = answer else { continue };
-            let told = own
-                .balls
-                .iter()
-                .map(|&[neighbors, dimension]| BallDimension {
+            let told = own.balls.iter().zip(own.seen).map(|(ball, seen)| {
+                let &[neighbors, dimension] = ball;
+                let ball = BallDimension {
                     neighbors,
                     dimension,
-                });
+                };
+                (ball, seen)
+            });
             balls.extend(own.centers.rows().iter().copied().zip(told));
+            models = match models.is_empty() {
+                true => own.models,
+                false => ModelCounts::with_later(&models, &own.models),
+            };
             centers.extend(&own.centers);
             neighbors += own.neighbors;
             sparse = sparse.into_iter().chain(own.sparse).min_by_key(|x| x.0);
@@ -68,16 +77,18 @@ impl Candidates {
         Ok(Self {
             centers: centers.sorted(),
             balls: balls.into_iter().map(|x| x.1).collect(),
+            models,
             of: tiles.points(),
             mean_neighbors: neighbors as f64 / tiles.points().max(1) as f64,
         })
     }
 }
 
-/// All points of a cloud as near as a reach to a ball that is not 2-dimensional, in the order of the cloud.
+/// All points of a cloud as near as a reach to a ball in which there is more than a sheet, in the order of the cloud.
 pub struct Excerpt {
-    points: Gathered,
-    cloud: PointCloud<f64>,
+    rows: Vec<CloudRow>,
+    /// Shared with whoever finds neighborhoods in it: the coordinates are there once.
+    cloud: Arc<PointCloud<f64>>,
     balls: KnownBalls,
     reach: f64,
     /// Up to which distance all points about each are in the excerpt.
@@ -100,19 +111,20 @@ impl Excerpt {
                 radius: reach,
             })?,
         };
-        let cloud = points.cloud()?;
+        let (rows, cloud) = points.into_cloud()?;
         let mut balls = vec![
             BallDimension {
                 neighbors: 0,
                 dimension: 2
             };
-            points.len()
+            rows.len()
         ];
-        for (&row, &ball) in candidates.centers.rows().iter().zip(&candidates.balls) {
-            let at = points.find(row).ok_or_else(|| super::gathered::lost(row))?;
-            balls[at] = ball;
+        let mut seen = vec![None; rows.len()];
+        for (&row, (ball, shown)) in candidates.centers.rows().iter().zip(&candidates.balls) {
+            let at = (rows.binary_search(&row)).map_err(|_| super::gathered::lost(row))?;
+            (balls[at], seen[at]) = (*ball, shown.clone());
         }
-        let whole = points.len() == tiles.points();
+        let whole = rows.len() == tiles.points();
         let tree = BallTree::new(cloud.dimension(), places);
         let known = cloud.iter().map(|place| {
             let far = tree.nearest(place, |_| true).map_or(0.0, |x| x.1.sqrt());
@@ -124,25 +136,27 @@ impl Excerpt {
         });
         Ok(Self {
             known: known.collect(),
-            cloud,
+            cloud: Arc::new(cloud),
             balls: KnownBalls {
                 balls,
+                seen,
+                models: candidates.models.clone(),
                 of: candidates.of,
                 mean_neighbors: candidates.mean_neighbors,
             },
-            points,
+            rows,
             reach,
             short: AtomicU64::new(0),
         })
     }
 
-    /// The points, with their rows of the whole cloud.
-    pub fn points(&self) -> &Gathered {
-        &self.points
+    /// Rows of the whole cloud, in order.
+    pub fn rows(&self) -> &[CloudRow] {
+        &self.rows
     }
 
-    /// The points as a cloud.
-    pub fn cloud(&self) -> &PointCloud<f64> {
+    /// The points.
+    pub fn cloud(&self) -> &Arc<PointCloud<f64>> {
         &self.cloud
     }
 
@@ -159,12 +173,12 @@ impl Excerpt {
 
     /// Row of the whole cloud.
     pub(super) fn in_cloud(&self, row: Row) -> CloudRow {
-        self.points.rows()[row.index()]
+        self.rows[row.index()]
     }
 
     /// The row of the excerpt that is a row of the cloud. O(log n).
-    pub(super) fn find(&self, row: CloudRow) -> Option<Row> {
-        self.points.find(row).map(Row::new)
+    pub fn find(&self, row: CloudRow) -> Option<Row> {
+        self.rows.binary_search(&row).ok().map(Row::new)
     }
 
     /// Notes that all points as near as `radius` to one of the excerpt matter.

@@ -21,6 +21,15 @@ impl Gathered {
         }
     }
 
+    /// None yet, with room for so many.
+    pub(super) fn with_room(width: usize, points: usize) -> Self {
+        Self {
+            width,
+            rows: Vec::with_capacity(points),
+            coordinates: Vec::with_capacity(width * points),
+        }
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.rows.len()
@@ -63,7 +72,7 @@ impl Gathered {
         let mut order: Vec<usize> = (0..self.len()).collect();
         order.sort_unstable_by_key(|&k| self.rows[k]);
         order.dedup_by_key(|k| self.rows[*k]);
-        let mut out = Self::new(self.width);
+        let mut out = Self::with_room(self.width, order.len());
         for k in order {
             out.push(self.rows[k], self.place(k));
         }
@@ -81,6 +90,14 @@ impl Gathered {
     /// Those of [`PointCloud::new`].
     pub fn cloud(&self) -> Result<PointCloud<f64>, Error> {
         PointCloud::new(self.width, self.coordinates.clone())
+    }
+
+    /// The rows, and the points as a cloud that has their coordinates.
+    ///
+    /// # Errors
+    /// Those of [`PointCloud::new`].
+    pub(super) fn into_cloud(self) -> Result<(Vec<CloudRow>, PointCloud<f64>), Error> {
+        Ok((self.rows, PointCloud::new(self.width, self.coordinates)?))
     }
 
     /// All coordinates, point after point.

@@ -8,7 +8,7 @@
 //! | question | depends on points up to |
 //! | --- | --- |
 //! | which points are landmarks, given some that are ([`landmarks`] asks until all are known) | dl |
-//! | which balls are not 2-dimensional | eps |
+//! | which balls are not 2-dimensional, and what models see in those that are | eps |
 //! | the neighborhoods of landmarks that no curve is near | the widest chart and dl |
 //! | the nearest point of a place | the halo; whoever is farther from all points is asked about again, by all tiles |
 //!
@@ -25,6 +25,7 @@ mod curves;
 mod excerpt;
 mod gathered;
 mod greedy;
+mod known;
 mod memory;
 mod question;
 mod row;
@@ -41,7 +42,7 @@ pub use excerpt::{Candidates, Excerpt, WatchedOracle};
 pub use gathered::Gathered;
 pub use memory::TilesInMemory;
 pub use question::{
-    Answer, BallQuestion, BallsOfTile, BehindQuestion, CellQuestion, Question, Tiles,
+    Answer, BallQuestion, BallsOfTile, BehindQuestion, CellQuestion, LookQuestion, Question, Tiles,
 };
 pub use row::CloudRow;
 pub use tile::Tile;

@@ -2,7 +2,9 @@
 
 use super::gathered::{Gathered, lost};
 use super::row::CloudRow;
-use crate::tuning::CellTuning;
+use crate::singularity::ModelName;
+use crate::stratify::{ModelCounts, Seen};
+use crate::tuning::{AnalysisTuning, CellTuning, ModelTuning};
 use crosscap_core::{CellNeighborhood, CurveEdge, Error, Landmark};
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +24,7 @@ pub enum Question {
     },
     /// The neighborhoods of the landmarks in the box. Answered by [`Answer::Cells`].
     Cells(CellQuestion),
-    /// Which points in the box have a ball that is not 2-dimensional. Answered by [`Answer::Balls`].
+    /// Which points in the box have a ball in which there is more than a sheet. Answered by [`Answer::Balls`].
     Balls(BallQuestion),
     /// The nearest point of each of some places, and others that are as near within rounding; for places in the box, of
     /// all points of the cloud that the tile knows. With `alone` for all places, of the points in the box.
@@ -60,7 +62,7 @@ pub struct BehindQuestion {
     pub company: usize,
 }
 
-/// Which balls are asked about, and when they count as 2-dimensional, by principal components.
+/// Which balls are asked about, when they count as 2-dimensional, by principal components, and what is looked for in those that are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallQuestion {
     /// Their radius (strict), unit of the data.
@@ -69,6 +71,25 @@ pub struct BallQuestion {
     pub dt: f64,
     /// Fewest points, the center among them, that a ball must hold.
     pub least: usize,
+    /// Take every ball as 2-dimensional: nothing is asked but what models of boundaries see.
+    pub surface: bool,
+    /// What is looked for in balls that are 2-dimensional; nothing where no model asks for them.
+    pub looks: Option<LookQuestion>,
+}
+
+/// What is looked for in balls that are 2-dimensional. Models have names, so that whoever has a tile can make them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LookQuestion {
+    /// The models that compete.
+    pub models: Vec<ModelName>,
+    /// Fit tolerance, unit of the data.
+    pub dp: f64,
+    /// Curve tolerance, unit of the data.
+    pub ep: f64,
+    /// The numbers that decide which stratum a point is in.
+    pub analysis: AnalysisTuning,
+    /// When the models believe a fit.
+    pub tuning: ModelTuning,
 }
 
 /// What neighborhoods depend on beside the points.
@@ -114,13 +135,27 @@ pub enum Answer {
     },
 }
 
+impl Answer {
+    /// The points that were asked for, if they were.
+    fn points(&self) -> Option<&Gathered> {
+        match self {
+            Self::Points(points) | Self::Nearest { points, .. } => Some(points),
+            _ => None,
+        }
+    }
+}
+
 /// The balls of the points in a box.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BallsOfTile {
-    /// The points whose balls are not 2-dimensional.
+    /// The points whose balls are not 2-dimensional, or show more than a sheet.
     pub centers: Gathered,
     /// How many points these balls hold, and their dimensions.
     pub balls: Vec<[u32; 2]>,
+    /// What models see in them, where they are 2-dimensional.
+    pub seen: Vec<Option<Seen>>,
+    /// What became of the models; nothing where none was asked.
+    pub models: Vec<ModelCounts>,
     /// Sum of the numbers of points of all balls of the box; of 2-dimensional ones it may be the number of a ball close by.
     pub neighbors: u64,
     /// The first point whose ball holds fewer points than it must, and how many.
@@ -166,9 +201,12 @@ pub trait Tiles {
     /// # Errors
     /// Those of [`ask`](Self::ask).
     fn gather(&self, question: &Question) -> Result<Gathered, Error> {
-        let mut all = Gathered::new(self.dimension());
-        for answer in self.ask(question)? {
-            if let Answer::Points(points) | Answer::Nearest { points, .. } = &answer {
+        let answers = self.ask(question)?;
+        let count = |answer: &Answer| answer.points().map_or(0, Gathered::len);
+        let mut all = Gathered::with_room(self.dimension(), answers.iter().map(count).sum());
+        // Whose points are taken is let go: they may be most of what is held.
+        for answer in answers {
+            if let Some(points) = answer.points() {
                 all.extend(points);
             }
         }

@@ -149,7 +149,8 @@ impl Tile {
 
     /// Some rows of the tile, for others.
     pub(super) fn gathered(&self, rows: impl IntoIterator<Item = Row>) -> Gathered {
-        let mut all = Gathered::new(self.points.dimension());
+        let rows: Vec<Row> = rows.into_iter().collect();
+        let mut all = Gathered::with_room(self.points.dimension(), rows.len());
         for row in rows {
             all.push(self.cloud_row(row), self.place(row));
         }

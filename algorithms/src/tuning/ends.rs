@@ -1,10 +1,10 @@
 //! When the models of the ends of curves, and of curves by themselves, believe a fit.
 
 use super::PagesTuning;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What the models of the ends of curves have in common.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurveEndTuning {
     /// Greatest share of the points farther than ep from the surface.
     pub astray: f64,
@@ -25,7 +25,7 @@ impl CurveEndTuning {
 
 /// When a pinch point is believed. *Not measured* apart from each other: with these, 13 of 13 cross-caps of 10,000 points
 /// came out right.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PinchPointTuning {
     /// What it has in common with other ends.
     pub end: CurveEndTuning,
@@ -47,7 +47,7 @@ impl PinchPointTuning {
 
 /// When the rim of a sheet that another one crosses is believed. They mean what those of
 /// [`BoundaryTuning`](super::BoundaryTuning) do.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RimTuning {
     /// Points that would have to lie beyond the rim.
     pub missing: f64,
@@ -67,7 +67,7 @@ impl RimTuning {
 }
 
 /// When any number of pages in a curve are believed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BookTuning {
     /// Share of the points that may be farther than ep from the sheets.
     pub astray: f64,
@@ -96,7 +96,7 @@ impl BookTuning {
 }
 
 /// When the end of a curve of pages is believed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BookEndTuning {
     /// What it has in common with other ends.
     pub end: CurveEndTuning,
@@ -129,7 +129,7 @@ impl BookEndTuning {
 }
 
 /// When a corner of a boundary is believed. Lengths are in radii of the ball.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BoundaryCornerTuning {
     /// Farthest that the corner is from the center.
     pub reach: f64,

@@ -72,7 +72,7 @@ impl Default for Tuning {
 }
 
 /// What decides which stratum a point is in. Shares are of the radius of the ball that is fitted.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AnalysisTuning {
     /// Fewest points of a neighborhood: a quadratic height has six coefficients.
     pub least_neighbors: usize,

@@ -4,10 +4,10 @@
 //! different things: the more sheets, the fewer points on each, and the wider a plane has to be while it is looked for.
 
 use super::ends::{BookEndTuning, BookTuning, BoundaryCornerTuning, PinchPointTuning};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// When the models that come with the program believe a fit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelTuning {
     /// Two sheets that cross.
     pub two_planes: TwoPlanesTuning,
@@ -57,7 +57,7 @@ impl Default for ModelTuning {
 }
 
 /// When two sheets that cross are believed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TwoPlanesTuning {
     /// Share of the points that three of the four cells must hold.
     pub cell_share: f64,
@@ -91,7 +91,7 @@ impl TwoPlanesTuning {
 }
 
 /// When three sheets on a curve are believed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct YJunctionTuning {
     /// Points within this share of the radius of a plane belong to it while planes are looked for.
     pub plane: f64,
@@ -126,7 +126,7 @@ impl YJunctionTuning {
 }
 
 /// When three sheets through a point are believed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TriplePointTuning {
     /// Points within this share of the radius of a plane belong to it while planes are looked for.
     pub plane: f64,
@@ -155,7 +155,7 @@ impl TriplePointTuning {
 }
 
 /// When two sheets through a point of R^4 are believed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IsolatedCrossingTuning {
     /// Points within this share of the radius of a plane belong to it while planes are looked for.
     pub plane: f64,
@@ -183,7 +183,7 @@ impl IsolatedCrossingTuning {
 }
 
 /// When the end of a sheet is believed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BoundaryTuning {
     /// Least distance of the center from the middle of the neighborhood, as a share of the radius: it is
     /// 0.42 on a straight boundary.
@@ -214,7 +214,7 @@ impl BoundaryTuning {
 }
 
 /// When a curve that meets a sheet in a point is believed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurveAndSheetTuning {
     /// Points within this share of the radius of a plane belong to it while it is looked for.
     pub plane: f64,
@@ -237,7 +237,7 @@ impl CurveAndSheetTuning {
 }
 
 /// When the tip of a cone is believed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConePointTuning {
     /// Least eigenvalue of the quadratic form as a share of the greatest, in size: half angles from 13 to 77 degrees for round cones.
     pub sharpness: f64,

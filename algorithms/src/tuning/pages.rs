@@ -1,10 +1,10 @@
 //! How the pages of a book are read from points.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What tells the half sheets that meet in a curve from the points around it. *Not measured* apart from each other: with these,
 /// books of 3 to 8 pages, T-junctions and the ends of both came out as `docs/src/models/book.md` says.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PagesTuning {
     /// Greatest share of the second variance that the third one has where the nearest points lie on one page.
     pub flat: f64,

@@ -35,7 +35,7 @@ def reconstruct(
     """Reconstruct a surface that may cross itself from points that workers hold.
 
     In one place there are the landmarks and their mesh, the 200,000 points that the certificate looks at one by one, the points about
-    curves, and four bytes for every point.
+    curves and boundaries, and four bytes for every point.
 
     Parameters
     ----------
@@ -45,8 +45,7 @@ def reconstruct(
     eps, dl, tri_eps, surface, random_state, on_refusal, verbose
         As in :class:`crosscap.SurfaceReconstruction`. Lengths have to be given.
     models : sequence of str, optional
-        Names of models of curves in which sheets meet, or which bound no surface. Boundaries are not looked for in tiles, nor is what has to be asked
-        about at every point.
+        Names of models, such as ``["two-planes", "boundary"]``; with ``surface`` those of boundaries alone are asked. A model of your own is not taken.
     tiles : int, optional
         Number of tiles; by the size of the cloud when left out. It changes no result.
     client : distributed.Client, optional

@@ -49,6 +49,8 @@ fn an_excerpt_says_of_every_row_what_the_cloud_says() {
         eps: EPS,
         dt: DT,
         least: 8,
+        surface: false,
+        looks: None,
     };
     let candidates = Candidates::of(&tiles, question).unwrap();
     assert_eq!(candidates.centers.len(), whole.candidates());
@@ -64,10 +66,10 @@ fn an_excerpt_says_of_every_row_what_the_cloud_says() {
     // A ball looked at, beside a curve that may be as far from a candidate as half of one.
     let (excerpt, part) = found(1.51 * EPS);
     assert!(excerpt.wider().is_none());
-    assert!(4 * excerpt.points().len() < cloud.len());
+    assert!(4 * excerpt.rows().len() < cloud.len());
     for row in (0..cloud.len()).map(Row::new) {
-        let at = excerpt.points().find(CloudRow::new(row.index()));
-        let site = at.map_or(&Site::Regular, |at| &part.sites()[Row::new(at)]);
+        let at = excerpt.find(CloudRow::new(row.index()));
+        let site = at.map_or(&Site::Regular, |at| &part.sites()[at]);
         assert!(site == &whole.sites()[row], "{row}");
     }
     assert_eq!(part.models(), whole.models());

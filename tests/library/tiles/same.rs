@@ -75,9 +75,15 @@ fn told(outcome: &Outcome) -> String {
         report,
         ..
     } = outcome;
+    let counts = [
+        report.added_landmarks,
+        report.candidates,
+        report.curve_points,
+        report.unexplained,
+    ];
     format!(
-        "{mesh:?} {homology:?} {certificate:?} {pieces:?} {failures:?} {:?} {:?} {:?} {}",
-        report.landmarks, report.triangulation, report.chart_distortion, report.added_landmarks
+        "{mesh:?} {homology:?} {certificate:?} {pieces:?} {failures:?} {:?} {:?} {:?} {:?} {counts:?}",
+        report.landmarks, report.triangulation, report.chart_distortion, report.models
     )
 }
 

@@ -98,12 +98,10 @@ fn what_tiles_cannot_be_asked_about_is_refused() {
         let tiles = TilesInMemory::new(cloud, &tiling, pipeline.tile_halo(), 0, &Serial).unwrap();
         pipeline.reconstruct_tiles(&tiles).map(drop)
     };
-    let everywhere = Parameters {
-        models: vec![ModelName::TwoPlanes, ModelName::CurveThroughSheet],
-        ..Parameters::new(0.6, 0.3)
-    };
+    let everywhere = ModelName::CurveThroughSheet.model(0.1, 0.05).unwrap();
+    let own = Pipeline::new(Parameters::new(0.6, 0.3)).unwrap();
     assert!(matches!(
-        ask(everywhere, &cloud),
+        own.models(vec![everywhere]).takes_tiles(),
         Err(Error::Parameter { name: "models", value, .. }) if value == "curve-through-sheet"
     ));
     let sphere = Parameters::new(0.6, 0.3).surface();

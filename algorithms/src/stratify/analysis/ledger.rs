@@ -1,11 +1,11 @@
 //! What became of every model: how often it was asked, refused, and won.
 
 use crosscap_core::{Rejection, SingularityModel};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What became of one model in the competition for neighborhoods.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ModelCounts {
     /// The model's own name.

@@ -14,6 +14,7 @@ mod look;
 mod options;
 mod part;
 mod refit;
+mod seen;
 
 pub use analyzer::Analyzer;
 pub(super) use fitter::{Fitter, Scratch};
@@ -21,11 +22,16 @@ pub use found::Analysis;
 pub use ledger::ModelCounts;
 pub use options::AnalysisOptions;
 pub(super) use options::marked;
+pub use part::KnownBalls;
+pub use seen::Seen;
 
 use crate::audit;
 use crosscap_core::{BallDimension, Error, Row, Scalar, Table};
+use explain::Verdict;
 use groups::Asked;
-pub use part::KnownBalls;
+
+/// What a first look says of a row whose ball has a dimension.
+type FirstLook<'f, S> = dyn Fn(Row, usize, &mut Scratch<S>) -> Option<Box<Verdict>> + Sync + 'f;
 
 impl<'a, S: Scalar> Analyzer<'a, S> {
     /// Analyzes every point.
@@ -89,13 +95,17 @@ impl<S: Scalar> Fitter<'_, S> {
         };
         let total: usize = balls.iter().map(|ball| ball.neighbors as usize).sum();
         out.mean_neighbors = total as f64 / n.max(1) as f64;
-        self.look_at(&balls, n, options, boundary, out)
+        let first = |row: Row, dimension: usize, scratch: &mut Scratch<S>| {
+            self.first_look(row, dimension, options, boundary[row], scratch)
+        };
+        self.look_at(&balls, &first, n, options, boundary, out)
     }
 
-    /// The same with balls that are known, of points that are all of a cloud of so many or a part of it.
+    /// The same with balls that are known, and what a `first` look at each says, of points that are all of a cloud of so many or a part of it.
     fn look_at(
         &self,
         balls: &[BallDimension],
+        first: &FirstLook<'_, S>,
         of: usize,
         options: &AnalysisOptions,
         boundary: &Table<Row, bool>,
@@ -104,8 +114,7 @@ impl<S: Scalar> Fitter<'_, S> {
         let found = self
             .space
             .map(self.execute, Scratch::default, |scratch, i| {
-                let (row, dimension) = (Row::new(i), balls[i].dimension as usize);
-                self.first_look(row, dimension, options, boundary[row], scratch)
+                first(Row::new(i), balls[i].dimension as usize, scratch)
             });
         let mut asked: Vec<(u8, Asked)> = Vec::new();
         for ((row, ball), verdict) in boundary.ids().zip(balls).zip(found) {
