@@ -47,10 +47,12 @@ const TILE_POINT: f64 = 120.0;
 const TILE_COORDINATE: f64 = 40.0;
 /// Of every point of the excerpt that curves are laid in, beside its coordinates.
 const EXCERPT_POINT: f64 = 180.0;
-/// Of every coordinate of it.
-const EXCERPT_COORDINATE: f64 = 60.0;
+/// Of every coordinate of it: the points, where they are moved to, and while they are gathered those that are not in order yet.
+const EXCERPT_COORDINATE: f64 = 32.0;
 /// A ball of a sample must hold so many points on average for its dimension to say something.
 const SAMPLED_BALL: f64 = 40.0;
+/// The same where models look for boundaries in it: in one of 1,000 balls of 40 points a gap that chance made passed for one.
+const SAMPLED_LOOK: f64 = 80.0;
 /// A crossing shows in balls about points up to so many radii from it, or farther.
 const SHOWN_FROM: f64 = 0.6;
 /// Models say of points up to so many radii from a boundary that it is near.
@@ -141,10 +143,12 @@ impl Needs {
         let question = BallQuestion {
             eps: wider * question.eps,
             least: 0,
-            looks: question.looks.map(|looks| LookQuestion {
-                dp: wider * looks.dp,
-                ep: wider * looks.ep,
-                ..looks
+            looks: question.looks.map(|looks| {
+                Box::new(LookQuestion {
+                    dp: wider * looks.dp,
+                    ep: wider * looks.ep,
+                    ..*looks
+                })
             }),
             ..question
         };
@@ -198,7 +202,11 @@ fn wider(sample: &PointCloud<f64>, question: &BallQuestion) -> Result<f64, Error
     let tree = MomentTree::new(sample)?;
     let balls = tree.settled_dimensions(question.eps, question.dt, &Serial)?;
     let total: f64 = balls.iter().map(|ball| f64::from(ball.neighbors)).sum();
-    let fuller = SAMPLED_BALL * balls.len() as f64 / total;
+    let wanted = match question.looks {
+        Some(_) => SAMPLED_LOOK,
+        None => SAMPLED_BALL,
+    };
+    let fuller = wanted * balls.len() as f64 / total;
     Ok(fuller.sqrt().max(1.0))
 }
 

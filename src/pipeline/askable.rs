@@ -55,14 +55,16 @@ impl Pipeline {
 impl Parts {
     /// Whether anything is looked for in balls.
     pub(super) fn looks_at_balls(&self) -> bool {
-        let finds_boundary = |model: &Box<dyn SingularityModel>| model.finds_boundary();
-        !self.parameters.surface || self.models.all().iter().any(finds_boundary)
+        !self.parameters.surface || self.finds_boundary()
     }
 
     /// Whether the surface is known to have no boundary.
     pub(super) fn is_closed(&self) -> bool {
-        let mut models = self.models.all().iter();
-        self.parameters.boundary.is_empty() && !models.any(|m| m.finds_boundary())
+        self.parameters.boundary.is_empty() && !self.finds_boundary()
+    }
+
+    fn finds_boundary(&self) -> bool {
+        self.models.all().iter().any(|m| m.finds_boundary())
     }
 
     /// The model that is asked about 2-dimensional balls, if one is.
@@ -79,12 +81,14 @@ impl Parts {
             dt: p.dt,
             least: tuning.analysis.least_neighbors,
             surface: p.surface,
-            looks: self.asks_everywhere().map(|_| LookQuestion {
-                models: p.models.clone(),
-                dp: p.dp,
-                ep: p.ep,
-                analysis: tuning.analysis.clone(),
-                tuning: tuning.models.clone(),
+            looks: self.asks_everywhere().map(|_| {
+                Box::new(LookQuestion {
+                    models: p.models.clone(),
+                    dp: p.dp,
+                    ep: p.ep,
+                    analysis: tuning.analysis.clone(),
+                    tuning: tuning.models,
+                })
             }),
         }
     }

@@ -34,6 +34,7 @@ mod waist;
 pub use crate::tuning::{
     AnalysisTuning, CellTuning, EndTuning, RefinementTuning, SkeletonTuning, Tuning,
 };
+pub(crate) use analysis::Looks;
 pub use analysis::{Analysis, AnalysisOptions, Analyzer, KnownBalls, ModelCounts, Seen};
 pub use charts::ChartSpace;
 pub use producer::WaistProducer;

@@ -8,7 +8,7 @@ use crate::execute::Serial;
 use crate::metric::Euclidean;
 use crate::moments::MomentTree;
 use crate::space::Space;
-use crate::stratify::{AnalysisOptions, Analyzer, ModelCounts, Seen};
+use crate::stratify::{AnalysisOptions, Analyzer, Looks};
 use crate::tuning::Tuning;
 use crosscap_core::{BallDimension, Error, Row, Table};
 
@@ -36,14 +36,11 @@ pub(super) fn of_tile(tile: &Tile, question: &BallQuestion) -> Result<BallsOfTil
     }
     // Whoever asked goes no further where a ball is sparse.
     let looks = (question.looks.as_ref()).filter(|_| found.sparse.is_none());
-    let seen = match looks {
-        Some(looks) => {
-            let (seen, models) = looked(tile, question, looks, &flat)?;
-            found.models = models;
-            seen
-        }
-        None => Vec::new(),
-    };
+    let mut seen = Vec::new();
+    if let Some(looks) = looks {
+        let looks = looked(tile, question, looks, &flat)?;
+        (seen, found.models) = (looks.seen, looks.models);
+    }
     let mut seen = seen.into_iter().peekable();
     let mut centers: Vec<Row> = Vec::new();
     for row in tile.ids().filter(own) {
@@ -86,16 +83,16 @@ fn dimensions(tile: &Tile, question: &BallQuestion) -> Result<Table<Row, BallDim
     Ok(all)
 }
 
-/// What models see in the balls that are `flat`, by row, and what became of the models.
+/// What models see in the balls that are `flat`.
 fn looked(
     tile: &Tile,
     question: &BallQuestion,
     looks: &LookQuestion,
     flat: &Table<Row, bool>,
-) -> Result<(Vec<(Row, Seen)>, Vec<ModelCounts>), Error> {
+) -> Result<Looks, Error> {
     let tuning = &Tuning {
         analysis: looks.analysis.clone(),
-        models: looks.tuning.clone(),
+        models: looks.tuning,
         ..Tuning::MEASURED
     };
     let models = looks.models.iter();

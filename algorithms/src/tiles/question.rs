@@ -74,7 +74,7 @@ pub struct BallQuestion {
     /// Take every ball as 2-dimensional: nothing is asked but what models of boundaries see.
     pub surface: bool,
     /// What is looked for in balls that are 2-dimensional; nothing where no model asks for them.
-    pub looks: Option<LookQuestion>,
+    pub looks: Option<Box<LookQuestion>>,
 }
 
 /// What is looked for in balls that are 2-dimensional. Models have names, so that whoever has a tile can make them.

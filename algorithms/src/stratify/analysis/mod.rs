@@ -23,6 +23,7 @@ pub use ledger::ModelCounts;
 pub use options::AnalysisOptions;
 pub(super) use options::marked;
 pub use part::KnownBalls;
+pub(crate) use seen::Looks;
 pub use seen::Seen;
 
 use crate::audit;

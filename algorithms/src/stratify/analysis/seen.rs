@@ -62,9 +62,17 @@ impl Seen {
     }
 }
 
+/// What was seen in some balls.
+pub(crate) struct Looks {
+    /// What the balls show that show more than a sheet, by row.
+    pub(crate) seen: Vec<(Row, Seen)>,
+    /// What became of the models.
+    pub(crate) models: Vec<ModelCounts>,
+}
+
 impl<S: Scalar> Analyzer<'_, S> {
-    /// What the models that ask for 2-dimensional balls see in those about the `wanted` rows, all of which are 2-dimensional, and what
-    /// became of the models. No boundary is given.
+    /// What the models that ask for 2-dimensional balls see in those about the `wanted` rows, all of which are 2-dimensional. No boundary is
+    /// given.
     ///
     /// # Errors
     /// [`Error::Shape`] for points without coordinates, [`Error::Law`] for what a model breaks.
@@ -72,7 +80,7 @@ impl<S: Scalar> Analyzer<'_, S> {
         &self,
         options: &AnalysisOptions,
         wanted: &Table<Row, bool>,
-    ) -> Result<(Vec<(Row, Seen)>, Vec<ModelCounts>), Error> {
+    ) -> Result<Looks, Error> {
         let fitter = self.fitter("since curves and boundaries are looked for in them")?;
         let found = self
             .space
@@ -85,7 +93,10 @@ impl<S: Scalar> Analyzer<'_, S> {
         fitter.faults.none()?;
         let seen = wanted.ids().zip(found);
         let seen = seen.filter_map(|(row, seen)| Some((row, seen?)));
-        Ok((seen.collect(), fitter.counts()))
+        Ok(Looks {
+            seen: seen.collect(),
+            models: fitter.counts(),
+        })
     }
 }
 
