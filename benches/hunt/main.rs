@@ -3,6 +3,7 @@
 //! ```text
 //! cargo bench --bench hunt -- --runs 500 --seed 1             # small clouds around one feature each
 //! cargo bench --bench hunt -- --family slit,cut --rule auto   # some families, parameters chosen by the program
+//! cargo bench --bench hunt -- --runs 500 --seed 1 --even      # thinned points, of one density
 //! cargo bench --bench hunt -- --seed 1 --only 37 --keep here  # one run again, its cloud kept
 //! ```
 //!
@@ -48,6 +49,7 @@ fn options() -> Result<Options, Box<dyn AnyError>> {
             rule: None,
             points: [500, 4000],
             sizes: [0.5, 12.0],
+            even: false,
             limit: Duration::from_secs(30),
             keep: None,
         },
@@ -56,6 +58,10 @@ fn options() -> Result<Options, Box<dyn AnyError>> {
     while let Some(name) = arguments.next() {
         if name == "--all" {
             options.all = true;
+            continue;
+        }
+        if name == "--even" {
+            options.settings.even = true;
             continue;
         }
         let value = arguments

@@ -134,7 +134,7 @@ impl End {
     }
 
     /// Open stars and places that the certificate complains about.
-    fn places(&self) -> usize {
+    pub(super) fn places(&self) -> usize {
         match self {
             Self::Refused {
                 open, violations, ..

@@ -56,15 +56,19 @@ impl Symptom {
         });
         if outcome.report.curve_points >= SOME && (at_curves || !outcome.failures.is_empty()) {
             Self::Curves
+        } else if !outcome.failures.is_empty()
+            && outcome.report.parameters.is_closed()
+            && found(&|v| v.kind == ViolationKind::BridgedGap)
+        {
+            Self::Torn
         } else if found(&|v| v.kind.level() == Level::Geometry && v.kind != ViolationKind::BareFold)
         {
             Self::Folds
         } else if !outcome.failures.is_empty() {
             let assumed = &outcome.report.parameters;
-            match assumed.is_closed() {
-                true if found(&|v| v.kind == ViolationKind::BridgedGap) => Self::Torn,
-                false if assumed.surface => Self::Frayed,
-                _ => Self::Open,
+            match !assumed.is_closed() && assumed.surface {
+                true => Self::Frayed,
+                false => Self::Open,
             }
         } else if Self::is_coarse(outcome) {
             Self::Coarse

@@ -1,10 +1,11 @@
 //! Chains of places far from the points: slits and cuts.
 
-use super::chance::{self, LEVELS, Level};
+use super::chance::{self, LEVELS, Level, TRIED};
 use super::discs::{Empty, Gap};
 use super::ground::COUNTED;
 use super::search::Search;
 use super::slope::{Expected, Hole};
+use super::tail::{READ, Tail};
 use super::tiles::{Shape, TILE};
 use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
@@ -17,8 +18,14 @@ const TOGETHER: f64 = 1.1 * TILE;
 const DEEP: f64 = 0.75;
 
 impl Search<'_> {
-    /// The chains of tiles of every level, as gaps.
-    pub(super) fn chains(&self, tiles: &[Empty], middles: &[f64], gaps: &mut Vec<Gap>) {
+    /// The chains of tiles of every level, as gaps; what is below `significance` is asked whether it follows from the others.
+    pub(super) fn chains(
+        &self,
+        tiles: &[Empty],
+        middles: &[f64],
+        significance: f64,
+        gaps: &mut Vec<Gap>,
+    ) {
         let pairs = self.pairs(tiles, middles);
         let mut sets = Sets::new(tiles);
         let mut next = 0;
@@ -29,40 +36,45 @@ impl Search<'_> {
                 sets.join(pairs[next].1, pairs[next].2);
                 next += 1;
             }
-            let deep: Vec<u32> = (0..tiles.len() as u32)
-                .filter(|&k| tiles[k as usize].away >= radius)
+            let most = if self.even.is_even() { READ } else { MEASURED };
+            let chains = sets.largest(tiles, radius, most);
+            let mut found: Vec<(Gap, Like)> = (chains.iter().take(MEASURED))
+                .map(|chain| self.likely(level, radius, chain, tiles, middles))
                 .collect();
-            let mut chains: Vec<(f64, u32)> = Vec::new();
-            for &k in &deep {
-                if sets.root(k) == k {
-                    chains.push((sets.measure[k as usize], k));
-                }
+            let told = |(gap, _): &(Gap, Like)| gap.p < significance;
+            if self.even.is_even() && found.iter().any(told) {
+                let others = (chains.iter().skip(MEASURED))
+                    .map(|chain| self.measured(chain, tiles, middles).0.expected);
+                let mut all: Vec<f64> = found.iter().map(|(gap, _)| gap.expected).collect();
+                all.extend(others);
+                follow(&mut found, all, self.points() as f64);
             }
-            chains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            chains.truncate(MEASURED);
-            if chains.is_empty() {
-                continue;
-            }
-            let mut members = vec![Vec::new(); chains.len()];
-            for k in deep {
-                let root = sets.root(k);
-                if let Some(at) = chains.iter().position(|c| c.1 == root) {
-                    members[at].push(k);
-                }
-            }
-            for chain in &members {
-                let (mut gap, counted, nearer) = self.measured(chain, tiles, middles);
-                let random = (level.radius / radius).powi(2);
-                let measure = chance::known(gap.expected * random, counted);
-                let points = self.points() as f64;
-                gap.p = if self.varies {
-                    Level::at(nearer * level.radius).chain(points, measure)
-                } else {
-                    level.chain(points, measure)
-                };
-                gaps.push(gap);
-            }
+            gaps.extend(found.into_iter().map(|(gap, _)| gap));
         }
+    }
+
+    /// A chain of a level as a gap, and how likely it is in a random sample.
+    fn likely(
+        &self,
+        level: &Level,
+        radius: f64,
+        chain: &[u32],
+        tiles: &[Empty],
+        middles: &[f64],
+    ) -> (Gap, Like) {
+        let (mut gap, counted, nearer) = self.measured(chain, tiles, middles);
+        let random = (level.radius / radius).powi(2);
+        let measure = chance::known(gap.expected * random, counted);
+        let points = self.points() as f64;
+        let nearer = if self.varies { nearer } else { 1.0 };
+        gap.p = if self.varies {
+            Level::at(nearer * level.radius).chain(points, measure)
+        } else {
+            level.chain(points, measure)
+        };
+        let measure = chance::known(gap.expected, counted);
+        let random = Level::at(nearer * radius).chain(points, measure);
+        (gap, Like { random })
     }
 
     /// A chain as a gap, the number of points around that its density is counted from, and how many times nearer to each other they are than
@@ -190,6 +202,25 @@ impl Search<'_> {
     }
 }
 
+/// How likely a chain is beside what its sample shows.
+struct Like {
+    /// Its probability in a random sample of the same density.
+    random: f64,
+}
+
+/// Gaps of a level of an even sample that follow from the others, whose measures are among `all`, are as likely as these say, and never
+/// less than in a random sample.
+fn follow(found: &mut [(Gap, Like)], mut all: Vec<f64>, points: f64) {
+    all.sort_unstable_by(|a, b| b.total_cmp(a));
+    let Some(tail) = Tail::of(&all, points) else {
+        return;
+    };
+    for (gap, like) in found {
+        let shown = (TRIED * tail.above(gap.expected)).min(1.0);
+        gap.p = gap.p.max(shown.min(like.random));
+    }
+}
+
 /// Sets of tiles with their measures.
 struct Sets {
     parent: Vec<u32>,
@@ -211,6 +242,29 @@ impl Sets {
             a = up;
         }
         a
+    }
+
+    /// The sets of tiles that are at least `radius` from the points, those of the largest measure first, and `most` of them at most.
+    fn largest(&mut self, tiles: &[Empty], radius: f64, most: usize) -> Vec<Vec<u32>> {
+        let deep: Vec<u32> = (0..tiles.len() as u32)
+            .filter(|&k| tiles[k as usize].away >= radius)
+            .collect();
+        let mut chains: Vec<(f64, u32)> = Vec::new();
+        for &k in &deep {
+            if self.root(k) == k {
+                chains.push((self.measure[k as usize], k));
+            }
+        }
+        chains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        chains.truncate(most);
+        let mut members = vec![Vec::new(); chains.len()];
+        for k in deep {
+            let root = self.root(k);
+            if let Some(at) = chains.iter().position(|c| c.1 == root) {
+                members[at].push(k);
+            }
+        }
+        members
     }
 
     fn join(&mut self, a: u32, b: u32) {

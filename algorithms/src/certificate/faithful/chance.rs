@@ -38,6 +38,9 @@ pub(super) const LEVELS: [Level; 7] = [
     level(1.75, -4.50, 0.44),
 ];
 
+/// What is looked for beside each other: chains of every level, and discs.
+pub(super) const TRIED: f64 = 2.0 * LEVELS.len() as f64;
+
 impl Level {
     /// The level of a radius between those of the table; the last one for all above, and a level where nothing is unlikely for those
     /// below.
@@ -61,8 +64,7 @@ impl Level {
     /// Probability that one of the chains of `points` points is as large as `measure`, at most; all levels, and
     /// discs beside chains, are counted as tried.
     pub fn chain(&self, points: f64, measure: f64) -> f64 {
-        let tried = 2.0 * LEVELS.len() as f64;
-        (tried * points * (self.start - self.rate * measure).exp()).min(1.0)
+        (TRIED * points * (self.start - self.rate * measure).exp()).min(1.0)
     }
 }
 
@@ -97,6 +99,14 @@ pub(super) fn discs(points: f64, measure: f64, count: usize) -> f64 {
         term *= mean / k as f64;
     }
     (2.0 * sum).min(1.0)
+}
+
+/// The measure that so many of the empty discs of `points` points exceed in a random sample, in the mean: the t with
+/// n (1 + t) exp(-t) = rank.
+pub(super) fn measure_of_rank(points: f64, rank: f64) -> f64 {
+    let log = (points / rank).ln().max(0.0);
+    // t = log + ln(1 + t): a contraction for every t above zero.
+    (0..60).fold(log, |t, _| log + t.ln_1p())
 }
 
 /// The measure that is as unlikely at a known density as `measure` is at a density that was

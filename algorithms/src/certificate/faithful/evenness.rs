@@ -1,5 +1,6 @@
 //! How even a sample is, beside points scattered at random.
 
+use super::tail::Tail;
 use std::f64::consts::LN_2;
 
 /// Largest factor by which a sample may be called less even than a random one, as a radius: with more, large
@@ -21,6 +22,8 @@ pub(super) const NEIGHBOR: usize = 8;
 pub(super) struct Evenness {
     scale: f64,
     power: f64,
+    /// How the largest empty discs go on, where that was read.
+    tail: Option<Tail>,
 }
 
 impl Evenness {
@@ -28,6 +31,7 @@ impl Evenness {
     pub const RANDOM: Self = Self {
         scale: 1.0,
         power: 1.0,
+        tail: None,
     };
 
     /// Fitted to the median and the 90 percent quantile of `measures`, the expected numbers of points in the
@@ -64,7 +68,14 @@ impl Evenness {
         Self {
             scale: half / LN_2.powf(1.0 / power),
             power,
+            tail: None,
         }
+    }
+
+    /// The same sample with what its largest empty discs say: no measure is rarer than it is among them, nor less rare than in a random
+    /// sample.
+    pub fn with_tail(self, tail: Option<Tail>) -> Self {
+        Self { tail, ..self }
     }
 
     /// By what factor points are nearer to each other than in a random sample, as areas, beyond what chance does; 1 where they are
@@ -90,12 +101,18 @@ impl Evenness {
     pub fn radius(&self, radius: f64) -> f64 {
         let random = std::f64::consts::PI * radius * radius;
         let own = self.scale * random.powf(1.0 / self.power);
+        let shown = self.tail.map_or(own, |tail| tail.own(random).min(random));
+        let own = own.max(shown);
         (own / std::f64::consts::PI).sqrt().min(LEAST_EVEN * radius)
     }
 
     /// The measure of an empty disc that is as rare in a random sample as `measure` is in this one.
     pub fn random(&self, measure: f64) -> f64 {
         let own = (measure / self.scale).powf(self.power);
+        let shown = self
+            .tail
+            .map_or(own, |tail| tail.random(measure).max(measure));
+        let own = own.min(shown);
         own.max(measure / (LEAST_EVEN * LEAST_EVEN))
     }
 }

@@ -9,10 +9,10 @@ impl Search<'_> {
         if self.points() < 2 {
             return Vec::new();
         }
-        let (tiles, middles) = self.far_tiles();
-        let mut gaps = self.empty_discs(&tiles, &middles, level);
+        let (tiles, middles) = &self.far;
+        let mut gaps = self.empty_discs(tiles, middles, level);
         gaps.extend(self.overhang());
-        self.chains(&tiles, &middles, &mut gaps);
+        self.chains(tiles, middles, level, &mut gaps);
         gaps.sort_by(|a, b| a.p.total_cmp(&b.p).then(b.expected.total_cmp(&a.expected)));
         let shown = gaps.iter().filter(|g| g.p < level).count().max(1);
         gaps.truncate(shown);

@@ -29,6 +29,7 @@ mod several;
 mod sheets;
 mod slope;
 mod standing;
+mod tail;
 mod tiles;
 mod wings;
 

@@ -1,5 +1,6 @@
 //! What the level asks its questions of: the mesh with the points that stand on it, their spacing, and how even they are.
 
+use super::discs::Empty;
 use super::evenness::{Evenness, NEIGHBOR};
 use super::footprints::Footprints;
 use super::ground::Ground;
@@ -44,6 +45,8 @@ pub(in crate::certificate) struct Search<'a> {
     /// What is taken off a distance to the end of the mesh.
     chord: f64,
     pub(super) even: Evenness,
+    /// What is far from the points, and the middles of these tiles one after the other.
+    pub(super) far: (Vec<Empty>, Vec<f64>),
     pub(super) varies: bool,
     /// Largest empty disc that chance leaves, as a radius in spacings.
     largest: f64,
@@ -83,6 +86,7 @@ impl<'a> Search<'a> {
             rim: (!places.is_empty()).then(|| BallTree::new(width, &places)),
             chord,
             even: Evenness::RANDOM,
+            far: Default::default(),
             varies: false,
             largest: 0.0,
             of,
@@ -90,6 +94,12 @@ impl<'a> Search<'a> {
         };
         search.varies = search.varies();
         search.even = search.evenness();
+        if search.points() >= 2 {
+            search.far = search.far_tiles();
+        }
+        if search.even.is_even() {
+            search.even = search.even.with_tail(search.tail());
+        }
         // one of n discs
         let random = ((search.points().max(2) as f64).ln() / PI).sqrt();
         search.largest = search.even.radius(random);

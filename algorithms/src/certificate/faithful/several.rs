@@ -3,6 +3,7 @@
 use super::chance;
 use super::discs::{Empty, Gap};
 use super::search::Search;
+use super::tail::{READ, Tail};
 use crosscap_core::squared_distance;
 
 /// Discs that are looked at together, at most: each more of them is one more that counts as tried.
@@ -12,7 +13,7 @@ impl Search<'_> {
     /// The largest empty disc, and those that lie apart from it, as many of them as are least likely together; the latter only
     /// below `level`.
     pub(super) fn empty_discs(&self, tiles: &[Empty], middles: &[f64], level: f64) -> Vec<Gap> {
-        let found = self.largest_apart(tiles, middles);
+        let found = self.largest_apart(tiles, middles, SEVERAL);
         let widest = found.first().map(|(gap, measure)| Gap {
             p: chance::disc(self.points() as f64, *measure),
             ..gap.clone()
@@ -20,6 +21,15 @@ impl Search<'_> {
         let mut gaps: Vec<Gap> = widest.into_iter().collect();
         gaps.extend(self.together(found).into_iter().filter(|gap| gap.p < level));
         gaps
+    }
+
+    /// How the largest empty discs go on, from what is expected in each of them.
+    pub(super) fn tail(&self) -> Option<Tail> {
+        let (tiles, middles) = &self.far;
+        let found = self.largest_apart(tiles, middles, READ);
+        let mut measures: Vec<f64> = found.iter().map(|(gap, _)| gap.expected).collect();
+        measures.sort_unstable_by(|a, b| b.total_cmp(a));
+        Tail::of(&measures, self.points() as f64)
     }
 
     /// As many discs as are least likely together.
@@ -47,11 +57,11 @@ impl Search<'_> {
     }
 
     /// The largest empty discs, widest first, each with its middle outside twice the others, and their measures.
-    fn largest_apart(&self, tiles: &[Empty], middles: &[f64]) -> Vec<(Gap, f64)> {
+    fn largest_apart(&self, tiles: &[Empty], middles: &[f64], count: usize) -> Vec<(Gap, f64)> {
         let width = self.mesh.vertices.dimension();
         let at = |k: usize| &middles[k * width..(k + 1) * width];
         let mut found: Vec<(Gap, f64)> = Vec::new();
-        while found.len() < SEVERAL {
+        while found.len() < count {
             let apart = |k: usize| {
                 let near = |gap: &Gap| squared_distance(at(k), &gap.place) < gap.size * gap.size;
                 !found.iter().any(|(gap, _)| near(gap))
