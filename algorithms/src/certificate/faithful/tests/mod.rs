@@ -1,6 +1,7 @@
 //! Each kind of gap on data made here, and its right twin.
 
 mod curves;
+mod even;
 mod in_points;
 
 use crate::certificate::{Certificate, CertificateOptions, ViolationKind, certify};
