@@ -34,30 +34,14 @@ impl Tail {
     /// independent of the others (Renyi 1953). The largest ones, up to half of them, are left out as far as such a step is no chance.
     /// O(discs).
     pub fn of(measures: &[f64], points: f64) -> Option<Self> {
-        let count = measures.len();
-        let mut out = 0;
-        let steps = |from: usize| count.saturating_sub(1 + from);
-        let mean = |from: usize| {
-            let sum: f64 = (from..count - 1).map(|k| step(measures, k)).sum();
-            sum / steps(from) as f64
-        };
-        for k in 0..count / 2 {
-            let left = steps(k + 1);
-            if left < LEAST {
-                break;
-            }
-            let known = left as f64;
-            let chance = (1.0 + step(measures, k) / (known * mean(k + 1))).powf(-known);
-            if chance * (count / 2) as f64 <= OUT {
-                out = k + 1;
-            }
-        }
-        let from = *measures.last()?;
-        (steps(out) >= LEAST).then(|| Self {
+        let rest = &measures[standing_out(measures)..];
+        let from = *rest.last()?;
+        let count = rest.len() as f64;
+        (rest.len() > LEAST).then(|| Self {
             from,
-            count: count as f64,
-            rare: chance::measure_of_rank(points, count as f64),
-            scale: mean(out),
+            count,
+            rare: chance::measure_of_rank(points, count),
+            scale: mean_step(rest, 0),
         })
     }
 
@@ -75,6 +59,31 @@ impl Tail {
     pub fn own(&self, random: f64) -> f64 {
         self.from + (random - self.rare) * self.scale
     }
+}
+
+/// How many of the largest do not follow from the others, up to half of them.
+fn standing_out(measures: &[f64]) -> usize {
+    let tried = measures.len() / 2;
+    let out = |&k: &usize| {
+        let left = measures.len() - 2 - k;
+        if left < LEAST {
+            return false;
+        }
+        // The scale is the mean of `left` steps, so that the ratio has the law of a mean of one to one of so many.
+        let known = left as f64;
+        let ratio = step(measures, k) / mean_step(measures, k + 1);
+        (1.0 + ratio / known).powf(-known) * tried as f64 <= OUT
+    };
+    (0..tried).rev().find(out).map_or(0, |k| k + 1)
+}
+
+/// The mean of the steps from number `first` on.
+fn mean_step(measures: &[f64], first: usize) -> f64 {
+    let steps = measures.len() - 1 - first;
+    (first..measures.len() - 1)
+        .map(|k| step(measures, k))
+        .sum::<f64>()
+        / steps as f64
 }
 
 /// How far the measure number `k` is above the next, times how many are as large.
