@@ -1,12 +1,12 @@
 //! Chains of places far from the points: slits and cuts.
 
 use super::chance::{self, LEVELS, Level, TRIED};
-use super::discs::{Empty, Gap};
+use super::discs::Gap;
 use super::ground::COUNTED;
 use super::search::Search;
 use super::slope::{Expected, Hole};
 use super::tail::{READ, Tail};
-use super::tiles::{Shape, TILE};
+use super::tiles::{Empty, Shape, TILE};
 use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
 

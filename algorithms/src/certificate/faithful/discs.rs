@@ -6,7 +6,7 @@ use super::ground::COUNTED;
 use super::nearby::{Nearby, SPARE};
 use super::search::Search;
 use super::slope::{Expected, Hole};
-use super::tiles::{Cut, Shape, TILE};
+use super::tiles::{Cut, Empty, Shape, TILE};
 use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
 use crosscap_core::squared_distance;
@@ -46,17 +46,6 @@ pub struct Gap {
     /// The least distance of these to the points and to the end of the mesh, unit of the data.
     #[serde(skip)]
     pub depth: f64,
-}
-
-/// A small part of the mesh that is far from the points.
-pub(super) struct Empty {
-    pub triangle: u32,
-    /// Weights of its middle.
-    pub weights: [f64; 3],
-    /// Distance to the nearest point or to the end of the mesh, in spacings.
-    pub away: f64,
-    /// Number of points expected on it.
-    pub measure: f64,
 }
 
 impl Search<'_> {

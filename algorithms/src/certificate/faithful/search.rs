@@ -1,10 +1,10 @@
 //! What the level asks its questions of: the mesh with the points that stand on it, their spacing, and how even they are.
 
-use super::discs::Empty;
 use super::evenness::{Evenness, NEIGHBOR};
 use super::footprints::Footprints;
 use super::ground::Ground;
 use super::standing::Standing;
+use super::tiles::Empty;
 use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
 use crate::certificate::incidence::Incidence;

@@ -1,9 +1,10 @@
 //! The largest empty disc, and several that are none of them unlikely but no chance together.
 
 use super::chance;
-use super::discs::{Empty, Gap};
+use super::discs::Gap;
 use super::search::Search;
 use super::tail::{READ, Tail};
+use super::tiles::Empty;
 use crosscap_core::squared_distance;
 
 /// Discs that are looked at together, at most: each more of them is one more that counts as tried.

@@ -7,6 +7,17 @@ pub(super) const TILE: f64 = 0.4;
 /// Deepest cut: a side becomes at most 2^12 sides.
 const DEEPEST: u32 = 12;
 
+/// A small part of the mesh that is far from the points.
+pub(super) struct Empty {
+    pub triangle: u32,
+    /// Weights of its middle.
+    pub weights: [f64; 3],
+    /// Distance to the nearest point or to the end of the mesh, in spacings.
+    pub away: f64,
+    /// Number of points expected on it.
+    pub measure: f64,
+}
+
 /// A part of a triangle, like it in shape.
 #[derive(Clone, Copy)]
 pub(super) struct Tile {
