@@ -14,6 +14,7 @@
 //! when its Betti numbers over Q are not those of the surface, or when it and the surface are further from each other than
 //! `TOO_FAR`, where a surface ends by what chance leaves empty there more; how many are wrong without that is told too. Each run is repeated by its seed and its number alone, whatever the families that are asked for.
 
+mod even;
 mod run;
 mod tally;
 mod truth;

@@ -1,10 +1,11 @@
 //! One run: a cloud, its reconstruction, and what is to be said about it.
 
+use crate::even::even;
 use crate::truth::{self, Distance};
 use crosscap::auto::Input;
 use crosscap::backends::interrupt::Interrupt;
 use crosscap::prelude::*;
-use crosscap_algorithms::surfaces::{Drawing, Feature, FeatureCloud, Random, thin_randomly};
+use crosscap_algorithms::surfaces::{Drawing, Feature, FeatureCloud, Random};
 use crosscap_backends::files::write_points;
 use crosscap_core::squared_distance;
 use std::error::Error as AnyError;
@@ -265,35 +266,6 @@ fn drawing(settings: &Settings, random: &mut Random) -> Drawing {
         },
         seed: random.below(1 << 30) as u64,
     }
-}
-
-/// How many times as many points are drawn as are left when they are thinned.
-const THINNED: usize = 12;
-/// Least distance of thinned points, in their spacing: no more points find room where they are that dense (random sequential adsorption
-/// of discs covers 0.547 of the plane).
-const APART: f64 = 0.834;
-
-/// A cloud of thinned points.
-fn even(feature: &Feature, drawing: &Drawing) -> Result<FeatureCloud, Error> {
-    let finer = (THINNED as f64).sqrt();
-    let many = feature.draw(&Drawing {
-        count: THINNED * drawing.count,
-        size: finer * drawing.size,
-        noise: finer * drawing.noise,
-        ..*drawing
-    })?;
-    let rows = thin_randomly(&many.points, APART * finer * many.spacing, drawing.seed)?;
-    let kept: Vec<f64> = (rows.iter())
-        .flat_map(|&row| many.points.point(row).iter().copied())
-        .collect();
-    let wider = ((THINNED * drawing.count) as f64 / rows.len() as f64).sqrt();
-    Ok(FeatureCloud {
-        points: PointCloud::new(3, kept)?,
-        spacing: wider * many.spacing,
-        thinnest: wider * many.thinnest,
-        size: many.size,
-        resolved: many.resolved / wider,
-    })
 }
 
 /// Does `work`, which is asked to stop after some time.

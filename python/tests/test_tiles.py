@@ -91,53 +91,30 @@ def test_what_tiles_cannot_be_asked_is_refused(torus):
 
 
 CROSSING = {"models": ["two-planes"], "random_state": 3}
-
-
-@pytest.fixture(scope="module")
-def spheres():
-    return crosscap.sample("two_spheres", 8000, random_state=7).points
-
-
-@pytest.fixture(scope="module")
-def whole_spheres(spheres):
-    return crosscap.SurfaceReconstruction(0.3, 0.15, prepare=False, **CROSSING).fit(spheres)
-
-
-def test_surfaces_that_cross_give_the_same_bytes(spheres, whole_spheres):
-    assert whole_spheres.betti_ == (1, 0, 3)
-    found = crosscap.tiles.reconstruct(spheres, 0.3, 0.15, tiles=5, n_jobs=2, **CROSSING)
-    assert told(found) == told(whole_spheres)
-
-
-def test_workers_give_the_same_bytes_of_surfaces_that_cross(spheres, whole_spheres, cluster):
-    found = crosscap.dask.reconstruct(spheres, 0.3, 0.15, tiles=4, **CROSSING)
-    assert told(found) == told(whole_spheres)
-
-
 BOUNDED = {"models": ["two-planes", "boundary", "curve-through-sheet", "boundary-corner"], "random_state": 3}
+CURVED = [("two_spheres", 8000, CROSSING, (1, 0, 3)), ("moebius", 5000, BOUNDED, (1, 1, 0))]
 
 
-@pytest.fixture(scope="module")
-def strip():
-    return crosscap.sample("moebius", 5000, random_state=7).points
+@pytest.fixture(scope="module", params=CURVED, ids=["crossing", "bounded"])
+def curved(request):
+    name, count, given, betti = request.param
+    points = crosscap.sample(name, count, random_state=7).points
+    whole = crosscap.SurfaceReconstruction(0.3, 0.15, prepare=False, **given).fit(points)
+    assert (whole.verdict_, whole.betti_) == ("verified", betti)
+    return points, given, whole
 
 
-@pytest.fixture(scope="module")
-def whole_strip(strip):
-    return crosscap.SurfaceReconstruction(0.3, 0.15, prepare=False, **BOUNDED).fit(strip)
+def test_surfaces_with_curves_give_the_same_bytes(curved):
+    points, given, whole = curved
+    found = crosscap.tiles.reconstruct(points, 0.3, 0.15, tiles=5, n_jobs=2, **given)
+    assert told(found) == told(whole)
+    assert found.report_["models"] == whole.report_["models"]
 
 
-def test_boundaries_give_the_same_bytes(strip, whole_strip):
-    assert whole_strip.verdict_ == "verified"
-    assert whole_strip.betti_ == (1, 1, 0)
-    found = crosscap.tiles.reconstruct(strip, 0.3, 0.15, tiles=5, n_jobs=2, **BOUNDED)
-    assert told(found) == told(whole_strip)
-    assert found.report_["models"] == whole_strip.report_["models"]
-
-
-def test_workers_give_the_same_bytes_of_boundaries(strip, whole_strip, cluster):
-    found = crosscap.dask.reconstruct(strip, 0.3, 0.15, tiles=4, **BOUNDED)
-    assert told(found) == told(whole_strip)
+def test_workers_give_the_same_bytes_of_surfaces_with_curves(curved, cluster):
+    points, given, whole = curved
+    found = crosscap.dask.reconstruct(points, 0.3, 0.15, tiles=4, **given)
+    assert told(found) == told(whole)
 
 
 @pytest.fixture(scope="module")

@@ -66,9 +66,10 @@ impl Symptom {
             Self::Folds
         } else if !outcome.failures.is_empty() {
             let assumed = &outcome.report.parameters;
-            match !assumed.is_closed() && assumed.surface {
-                true => Self::Frayed,
-                false => Self::Open,
+            if assumed.surface && !assumed.is_closed() {
+                Self::Frayed
+            } else {
+                Self::Open
             }
         } else if Self::is_coarse(outcome) {
             Self::Coarse

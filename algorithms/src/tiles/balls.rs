@@ -115,6 +115,7 @@ fn looked(
         boundary: Vec::new(),
     };
     let found = analyzer.look_at_sheets(&options, flat);
+    oracle.sufficed()?;
     found.map_err(|mut error| {
         if let Error::Law { point, .. } = &mut error {
             *point = tile.cloud_row(Row::new(*point)).index();

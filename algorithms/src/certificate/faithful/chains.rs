@@ -5,7 +5,7 @@ use super::discs::Gap;
 use super::ground::COUNTED;
 use super::search::Search;
 use super::slope::{Expected, Hole};
-use super::tail::{READ, Tail};
+use super::tail::{LARGEST, Tail};
 use super::tiles::{Empty, Shape, TILE};
 use crate::balls::BallTree;
 use crate::certificate::geometry::corners;
@@ -36,24 +36,28 @@ impl Search<'_> {
                 sets.join(pairs[next].1, pairs[next].2);
                 next += 1;
             }
-            let most = if self.even.is_even() { READ } else { MEASURED };
+            let most = if self.even.is_even() {
+                LARGEST
+            } else {
+                MEASURED
+            };
             let chains = sets.largest(tiles, radius, most);
-            let mut found: Vec<(Gap, Like)> = (chains.iter().take(MEASURED))
+            let mut found: Vec<Likely> = (chains.iter().take(MEASURED))
                 .map(|chain| self.likely(level, radius, chain, tiles, middles))
                 .collect();
-            let told = |(gap, _): &(Gap, Like)| gap.p < significance;
+            let told = |likely: &Likely| likely.gap.p < significance;
             if self.even.is_even() && found.iter().any(told) {
                 let others = (chains.iter().skip(MEASURED))
                     .map(|chain| self.measured(chain, tiles, middles).0.expected);
-                let mut all: Vec<f64> = found.iter().map(|(gap, _)| gap.expected).collect();
-                all.extend(others);
+                let all = found.iter().map(|likely| likely.gap.expected);
+                let all = all.chain(others).collect();
                 follow(&mut found, all, self.points() as f64);
             }
-            gaps.extend(found.into_iter().map(|(gap, _)| gap));
+            gaps.extend(found.into_iter().map(|likely| likely.gap));
         }
     }
 
-    /// A chain of a level as a gap, and how likely it is in a random sample.
+    /// A chain of a level as a gap, with its probability.
     fn likely(
         &self,
         level: &Level,
@@ -61,7 +65,7 @@ impl Search<'_> {
         chain: &[u32],
         tiles: &[Empty],
         middles: &[f64],
-    ) -> (Gap, Like) {
+    ) -> Likely {
         let (mut gap, counted, nearer) = self.measured(chain, tiles, middles);
         let random = (level.radius / radius).powi(2);
         let measure = chance::known(gap.expected * random, counted);
@@ -74,7 +78,7 @@ impl Search<'_> {
         };
         let measure = chance::known(gap.expected, counted);
         let random = Level::at(nearer * radius).chain(points, measure);
-        (gap, Like { random })
+        Likely { gap, random }
     }
 
     /// A chain as a gap, the number of points around that its density is counted from, and how many times nearer to each other they are than
@@ -202,22 +206,23 @@ impl Search<'_> {
     }
 }
 
-/// How likely a chain is beside what its sample shows.
-struct Like {
+/// A chain as a gap, with its probability in a sample as even as this one.
+struct Likely {
+    gap: Gap,
     /// Its probability in a random sample of the same density.
     random: f64,
 }
 
-/// Gaps of a level of an even sample that follow from the others, whose measures are among `all`, are as likely as these say, and never
-/// less than in a random sample.
-fn follow(found: &mut [(Gap, Like)], mut all: Vec<f64>, points: f64) {
+/// Gaps of a level of an even sample that follow from the others, whose measures are among `all`, are as likely as these say, and no
+/// likelier than in a random sample.
+fn follow(found: &mut [Likely], mut all: Vec<f64>, points: f64) {
     all.sort_unstable_by(|a, b| b.total_cmp(a));
     let Some(tail) = Tail::of(&all, points) else {
         return;
     };
-    for (gap, like) in found {
+    for Likely { gap, random } in found {
         let shown = (TRIED * tail.above(gap.expected)).min(1.0);
-        gap.p = gap.p.max(shown.min(like.random));
+        gap.p = gap.p.max(shown.min(*random));
     }
 }
 

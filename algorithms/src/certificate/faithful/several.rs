@@ -3,7 +3,7 @@
 use super::chance;
 use super::discs::Gap;
 use super::search::Search;
-use super::tail::{READ, Tail};
+use super::tail::{LARGEST, Tail};
 use super::tiles::Empty;
 use crosscap_core::squared_distance;
 
@@ -27,7 +27,7 @@ impl Search<'_> {
     /// How the largest empty discs go on, from what is expected in each of them.
     pub(super) fn tail(&self) -> Option<Tail> {
         let (tiles, middles) = &self.far;
-        let found = self.largest_apart(tiles, middles, READ);
+        let found = self.largest_apart(tiles, middles, LARGEST);
         let mut measures: Vec<f64> = found.iter().map(|(gap, _)| gap.expected).collect();
         measures.sort_unstable_by(|a, b| b.total_cmp(a));
         Tail::of(&measures, self.points() as f64)

@@ -7,8 +7,8 @@
 
 use super::chance;
 
-/// Discs that the tail is read from, at most.
-pub(super) const READ: usize = 80;
+/// Discs, or chains of a level, that the tail is read from, at most.
+pub(super) const LARGEST: usize = 80;
 /// The same at least, without those that stand out.
 const LEAST: usize = 20;
 /// Probability below which the largest discs do not follow from the others.
@@ -17,7 +17,7 @@ const OUT: f64 = 1e-3;
 /// How the measures of the largest empty discs go on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tail {
-    /// Measure of the smallest disc that was read.
+    /// Measure of the smallest disc that was read, in points expected in it as all measures here.
     from: f64,
     /// How many were read.
     count: f64,
@@ -31,7 +31,7 @@ impl Tail {
     /// Read from the measures of the largest empty discs of `points` points, largest first; none where there are too few of them.
     ///
     /// Of n variables with an exponential tail the k-th largest is above the next by a variable with the mean `scale` / k, each
-    /// independent of the others (Renyi 1953). The largest ones, up to half of them, are left out as far as such a step is no chance.
+    /// independent of the others (A. Renyi, On the theory of order statistics, 1953). The largest ones, up to half of them, are left out as far as such a step is no chance.
     /// O(discs).
     pub fn of(measures: &[f64], points: f64) -> Option<Self> {
         let rest = &measures[standing_out(measures)..];

@@ -22,7 +22,7 @@ fn grid(seed: u64, voids: &[([f64; 2], f64)]) -> PointCloud<f64> {
     PointCloud::new(3, rows).unwrap()
 }
 
-/// Voids of all sizes as a scan has them: the areas, in points, begin at `least` and become rarer by e for each 0.9 more.
+/// Voids of all sizes as a scan has them: the areas, in points, begin at 1.5 and become rarer by a factor e for each 0.9 more.
 fn scanned(seed: u64) -> Vec<([f64; 2], f64)> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut one = || {
