@@ -29,6 +29,10 @@ impl Progress<'_> {
     fn nearly(&self) -> Option<Parameters> {
         let farthest = self.best.as_ref()?.0;
         let last = self.attempts.len() - 1;
+        // Nor does it close a star near an end, which a smaller neighborhood sees better.
+        if self.symptoms[farthest] == Some(Symptom::Frayed) {
+            return None;
+        }
         let asked = [farthest, last]
             .into_iter()
             .find(|&index| self.needed[index].is_none());
