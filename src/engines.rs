@@ -1,5 +1,6 @@
 //! What serves the metrics of one reconstruction.
 
+use crate::kept::Kept;
 use crate::spaces::{MetricName, Spaces, Warning};
 use crosscap_algorithms::metric::{Lifted, tangent_planes};
 use crosscap_algorithms::prepare::LocalSpacing;
@@ -11,6 +12,7 @@ use crosscap_backends::euclidean::EuclideanOracle;
 use crosscap_backends::geodesic::{EdgeRule, GeodesicMetric, GraphReport};
 use crosscap_backends::parallel::Threads;
 use crosscap_core::{Error, PointCloud};
+use std::sync::Arc;
 
 /// Lengths measured in the spacing of the points.
 struct Conformal {
@@ -66,9 +68,9 @@ pub(crate) struct Engines {
     pub(crate) cloud: PointCloud<f64>,
     /// Straight lines between them.
     pub(crate) euclidean: EuclideanOracle<f64>,
-    geodesic: Option<GeodesicMetric<f64>>,
+    geodesic: Option<Arc<GeodesicMetric<f64>>>,
     /// Tangent planes, where charts or the graph ask for them.
-    planes: Option<TangentField>,
+    planes: Option<Arc<TangentField>>,
     conformal: Option<Conformal>,
     /// Straight lines in the other of the two: lifted for charts alone, or not lifted for charts.
     other: Option<EuclideanOracle<f64>>,
@@ -76,11 +78,13 @@ pub(crate) struct Engines {
 }
 
 impl Engines {
+    /// All that the metrics need; what is `kept` of the same points is not made again.
     pub(crate) fn new(
         spaces: &Spaces,
         eps: f64,
         positions: &PointCloud<f64>,
         tuning: &TangentTuning,
+        kept: &Kept,
         threads: &Threads,
     ) -> Result<Self, Error> {
         let flat = EuclideanOracle::new(positions.clone())?;
@@ -99,16 +103,14 @@ impl Engines {
         };
         let along = spaces.uses(MetricName::Geodesic);
         let planes = if along && (spaces.sheets || spaces.asks_planes()) {
-            let cloud = euclidean.cloud().clone();
-            Some(TangentField::new(cloud, &euclidean, tuning, threads)?)
+            Some(kept.planes(&euclidean, tuning, threads)?)
         } else {
             None
         };
         let geodesic = if along {
-            let field = planes.as_ref().filter(|_| spaces.sheets);
-            let joins = |a, b| field.is_none_or(|field| field.joins(a, b));
-            let build = || GeodesicMetric::joining(&euclidean, spaces.graph, &joins);
-            Some(threads.install(build)?)
+            let field = planes.as_deref().filter(|_| spaces.sheets);
+            let sheets = field.map(|field| (field, tuning));
+            Some(kept.paths(&euclidean, spaces.graph, sheets, threads)?)
         } else {
             None
         };
@@ -131,7 +133,7 @@ impl Engines {
     /// The space of the analysis.
     pub(crate) fn analysis(&self) -> Space<'_, f64> {
         let paths = match self.spaces.metric {
-            MetricName::Geodesic => self.geodesic.as_ref(),
+            MetricName::Geodesic => self.geodesic.as_deref(),
             MetricName::Conformal => self.conformal.as_ref().map(|own| &own.metric),
             MetricName::Euclidean | MetricName::Lifted => None,
         };
@@ -144,7 +146,7 @@ impl Engines {
     /// What measures the charts.
     pub(crate) fn charts(&self) -> ChartSpace<'_, f64> {
         let own = match (self.spaces.charts(), self.spaces.metric) {
-            (MetricName::Geodesic, _) => self.geodesic.as_ref().map(Space::of),
+            (MetricName::Geodesic, _) => self.geodesic.as_deref().map(Space::of),
             (MetricName::Conformal, _) => self.conformal.as_ref().map(|own| Space::of(&own.metric)),
             (MetricName::Lifted, MetricName::Lifted) => None,
             (
@@ -153,7 +155,7 @@ impl Engines {
             ) => None,
             _ => self.other.as_ref().map(Space::of),
         };
-        let planes = (self.planes.as_ref()).filter(|_| self.spaces.asks_planes());
+        let planes = (self.planes.as_deref()).filter(|_| self.spaces.asks_planes());
         match (own, planes) {
             (None, _) => ChartSpace::Places,
             (Some(own), None) => ChartSpace::Metric(own),
@@ -164,7 +166,7 @@ impl Engines {
     /// The graph of geodesic distances, where there is one.
     pub(crate) fn graph(&self) -> Option<&GraphReport> {
         let conformal = self.conformal.as_ref().map(|own| &own.metric);
-        (self.geodesic.as_ref().or(conformal)).map(GeodesicMetric::report)
+        (self.geodesic.as_deref().or(conformal)).map(GeodesicMetric::report)
     }
 
     /// How many times the usual spacing that at each point is, where landmarks follow the spacing.

@@ -12,6 +12,7 @@ pub mod command;
 pub mod comparison;
 mod engines;
 mod given;
+mod kept;
 pub mod pipeline;
 pub mod refusal;
 mod spaces;

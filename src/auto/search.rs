@@ -16,6 +16,7 @@ use super::pinned::Pinned;
 use super::prepared::{Made, Prepared};
 use super::rounded::Rounded;
 use super::symptoms::Symptom;
+use crate::kept::Kept;
 use crate::pipeline::{Outcome, Parameters, Pipeline};
 use crosscap_algorithms::prepare::PreparationSummary;
 use crosscap_algorithms::singularity::ModelName;
@@ -102,6 +103,8 @@ struct Progress<'a> {
     needed: Vec<Option<f64>>,
     /// The gaps of the points that they found.
     evidence: Evidence,
+    /// What they made of the points alone.
+    kept: Kept,
     /// The attempt that came farthest.
     best: Option<(usize, Result<Outcome, Error>)>,
     /// What was done about outliers and noise in that attempt.
@@ -174,6 +177,7 @@ impl Auto {
             symptoms: Vec::new(),
             needed: Vec::new(),
             evidence: Evidence::default(),
+            kept: Kept::default(),
             best: None,
             preparation: None,
             began: Instant::now(),
@@ -229,7 +233,9 @@ impl Progress<'_> {
         let since = Instant::now();
         // Every further attempt is another chance for a wrong mesh to pass.
         let times = self.attempts.len() + 1;
-        let mut make = |parameters| make(parameters).map(|pipeline| pipeline.stricter(times));
+        let kept = &self.kept;
+        let mut make =
+            |parameters| make(parameters).map(|pipeline| pipeline.stricter(times).keeping(kept));
         let Made { outcome, summary } = self.prepared.run(&parameters, &mut make)?;
         // What was chosen later may not suit the input; that is no fault of the input.
         if let Err(error) = &outcome

@@ -19,6 +19,7 @@ pub use progress::Stage;
 pub use report::{GivenSpace, Outcome, PluginNames, Report};
 pub(crate) use rows::{distinct_points, distinct_rows};
 
+use crate::kept::Kept;
 use crate::spaces::{Custom, Warning};
 use crosscap_algorithms::certificate::Limits;
 use crosscap_algorithms::chart::ClassicalScaling;
@@ -72,6 +73,7 @@ struct Parts {
     analysis_metric: Option<Custom>,
     chart_metric: Option<Custom>,
     interrupt: Interrupt,
+    kept: Kept,
 }
 
 impl Parts {
@@ -132,6 +134,7 @@ impl Pipeline {
             analysis_metric: None,
             chart_metric: None,
             interrupt: Interrupt::default(),
+            kept: Kept::default(),
             tuning: Tuning::MEASURED,
             limits: Limits::default(),
             parameters,
@@ -160,6 +163,12 @@ impl Pipeline {
     pub(crate) fn stricter(mut self, times: usize) -> Self {
         self.parts.limits.significance *= times as f64;
         self.parts.limits.loose_end /= times as f64;
+        self
+    }
+
+    /// The same with what earlier runs made of the same points alone.
+    pub(crate) fn keeping(mut self, kept: &Kept) -> Self {
+        self.parts.kept = kept.clone();
         self
     }
 

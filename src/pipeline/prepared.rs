@@ -51,9 +51,10 @@ impl Parts {
             eps,
             ..
         } = &self.parameters;
+        let (tangents, kept) = (&self.tuning.tangents, &self.kept);
         Ok(Prepared {
             boundary: rows.positions(input.cloud, boundary)?,
-            engines: Engines::new(spaces, *eps, &rows.cloud, &self.tuning.tangents, threads)?,
+            engines: Engines::new(spaces, *eps, &rows.cloud, tangents, kept, threads)?,
             rows,
             given: input.given,
         })

@@ -177,6 +177,16 @@ impl<'a, S: Scalar> Space<'a, S> {
         audit::metric(self.metric, self.oracle)
     }
 
+    /// Whether both ask the same metric and the same oracle; what was found of one then holds for the other.
+    pub(crate) fn is_same_as(&self, other: &Self) -> bool {
+        // What has no size has no place of its own.
+        let [a, b] = [self, other].map(|space| (space.metric, space.oracle));
+        size_of_val(a.0) > 0
+            && size_of_val(a.1) > 0
+            && std::ptr::addr_eq(a.0, b.0)
+            && std::ptr::addr_eq(a.1, b.1)
+    }
+
     /// What an oracle told, if all of it are distances.
     ///
     /// # Errors

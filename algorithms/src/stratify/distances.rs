@@ -10,13 +10,65 @@ use crosscap_core::{
     CellNeighborhood, Error, Landmark, MetricSpace, Row, Scalar, SparseDistances, Table,
 };
 
-/// The distances of all members of each neighborhood, of landmarks that stand for `rows`.
+/// Distances of landmarks in the metric of the charts that were asked for last.
+///
+/// A waist with a few more landmarks has nearly all of them in common with the one before, and paths are what it takes longest to find.
+pub(super) struct Asked<S> {
+    rows: Vec<Row>,
+    /// Sorted.
+    pairs: Vec<(Landmark, Landmark)>,
+    lengths: Vec<S>,
+}
+
+impl<S> Default for Asked<S> {
+    fn default() -> Self {
+        Self {
+            rows: Vec::new(),
+            pairs: Vec::new(),
+            lengths: Vec::new(),
+        }
+    }
+}
+
+impl<S: Scalar> Asked<S> {
+    /// Those of sorted pairs of landmarks that stand for `rows`, of which only the new ones are asked for.
+    fn lengths(
+        &mut self,
+        execute: &dyn Execute,
+        metric: &dyn MetricSpace<Scalar = S>,
+        rows: &Table<Landmark, Row>,
+        pairs: &[(Landmark, Landmark)],
+    ) -> Result<&[S], Error> {
+        if !rows.as_slice().starts_with(&self.rows) {
+            *self = Self::default();
+        }
+        let known = |pair: &(Landmark, Landmark)| self.pairs.binary_search(pair).ok();
+        let before: Vec<Option<usize>> = pairs.iter().map(known).collect();
+        let unknown = pairs.iter().zip(&before).filter(|(_, at)| at.is_none());
+        let fresh: Vec<(Landmark, Landmark)> = unknown.map(|(&pair, _)| pair).collect();
+        let mut found = asked(execute, metric, rows, &fresh)?.into_iter();
+        let lengths = before.into_iter().filter_map(|at| match at {
+            Some(at) => Some(self.lengths[at]),
+            None => found.next(),
+        });
+        *self = Self {
+            lengths: lengths.collect(),
+            rows: rows.as_slice().to_vec(),
+            pairs: pairs.to_vec(),
+        };
+        Ok(&self.lengths)
+    }
+}
+
+/// The distances of all members of each neighborhood, of landmarks that stand for `rows`; `before` are those of a waist that was made
+/// before of the same cloud.
 pub(super) fn within_charts<S: Scalar>(
     analyzer: &Analyzer<'_, S>,
     strata: &Strata,
     charts: &ChartSpace<'_, S>,
     rows: &Table<Landmark, Row>,
     neighborhoods: &[CellNeighborhood],
+    before: &mut Asked<S>,
 ) -> Result<SparseDistances<S>, Error> {
     match charts.space() {
         None => {
@@ -31,8 +83,11 @@ pub(super) fn within_charts<S: Scalar>(
         }
         Some(space) => {
             let pairs = pairs(neighborhoods.iter().map(|x| x.members()));
-            let (execute, planes) = (analyzer.execute, charts.planes());
-            let mut lengths = lengths(execute, space.metric(), planes, rows, &pairs)?;
+            let asked = before.lengths(analyzer.execute, space.metric(), rows, &pairs)?;
+            let mut lengths = asked.to_vec();
+            if let Some(planes) = charts.planes() {
+                straighten(planes, rows, &pairs, &mut lengths);
+            }
             add_moves(analyzer, strata, rows, &pairs, &mut lengths);
             let entries = pairs.iter().zip(&lengths).map(|(&(a, b), &d)| (a, b, d));
             SparseDistances::new(rows.len(), entries)
@@ -66,6 +121,20 @@ pub(super) fn lengths<S: Scalar>(
     rows: &Table<Landmark, Row>,
     pairs: &[(Landmark, Landmark)],
 ) -> Result<Vec<S>, Error> {
+    let mut lengths = asked(execute, metric, rows, pairs)?;
+    if let Some(planes) = planes {
+        straighten(planes, rows, pairs, &mut lengths);
+    }
+    Ok(lengths)
+}
+
+/// What a metric says of sorted pairs of landmarks, asked for row by row.
+fn asked<S: Scalar>(
+    execute: &dyn Execute,
+    metric: &dyn MetricSpace<Scalar = S>,
+    rows: &Table<Landmark, Row>,
+    pairs: &[(Landmark, Landmark)],
+) -> Result<Vec<S>, Error> {
     let runs: Vec<&[(Landmark, Landmark)]> = pairs.chunk_by(|x, y| x.0 == y.0).collect();
     let lengths = execute::map(execute, runs.len(), Vec::new, |targets, k| {
         targets.clear();
@@ -74,14 +143,11 @@ pub(super) fn lengths<S: Scalar>(
         metric.distances_to(rows[runs[k][0].0].index(), targets, &mut lengths);
         lengths
     });
-    let mut lengths: Vec<S> = lengths.into_iter().flatten().collect();
+    let lengths: Vec<S> = lengths.into_iter().flatten().collect();
     let wrong = |d: &S| !(d.is_finite() && *d >= S::zero());
     if let Some(at) = lengths.iter().position(wrong) {
         let [p, q] = [pairs[at].0, pairs[at].1].map(|k| rows[k].index());
         audit::distance(metric, p, q)?;
-    }
-    if let Some(planes) = planes {
-        straighten(planes, rows, pairs, &mut lengths);
     }
     Ok(lengths)
 }
@@ -126,5 +192,57 @@ fn add_moves<S: Scalar>(
             let straight = cloud.squared_distance(p, q).sqrt();
             *length = S::of((length.as_f64() + moved - straight).max(0.0));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::execute::Serial;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Numbers on a line, which count the distances they are asked for.
+    #[derive(Default)]
+    struct Line(AtomicUsize);
+
+    impl MetricSpace for Line {
+        type Scalar = f64;
+
+        fn len(&self) -> usize {
+            100
+        }
+
+        fn distance(&self, a: usize, b: usize) -> f64 {
+            self.0.fetch_add(1, Ordering::Relaxed);
+            a.abs_diff(b) as f64
+        }
+
+        fn name(&self) -> &str {
+            "line"
+        }
+    }
+
+    /// Of a waist with one more landmark only the pairs that are new are asked for, wherever they stand among the others; of other landmarks
+    /// all of them.
+    #[test]
+    fn what_was_asked_before_is_not_asked_again() {
+        let (line, mut asked) = (Line::default(), Asked::default());
+        let mut of = |rows: &[usize], pairs: &[(usize, usize)]| {
+            let rows: Table<Landmark, Row> = rows.iter().map(|&k| Row::new(k)).collect();
+            let pair = |&(a, b): &(usize, usize)| (Landmark::new(a), Landmark::new(b));
+            let pairs: Vec<(Landmark, Landmark)> = pairs.iter().map(pair).collect();
+            let before = line.0.load(Ordering::Relaxed);
+            let found = asked
+                .lengths(&Serial, &line, &rows, &pairs)
+                .unwrap()
+                .to_vec();
+            (found, line.0.load(Ordering::Relaxed) - before)
+        };
+        let first = of(&[10, 20, 50], &[(0, 1), (0, 2), (1, 2)]);
+        assert_eq!(first, (vec![10.0, 40.0, 30.0], 3));
+        let more = of(&[10, 20, 50, 45], &[(0, 1), (0, 3), (1, 2), (2, 3)]);
+        assert_eq!(more, (vec![10.0, 35.0, 30.0, 5.0], 2));
+        let other = of(&[11, 20, 50], &[(0, 1), (1, 2)]);
+        assert_eq!(other, (vec![9.0, 30.0], 2));
     }
 }

@@ -5,7 +5,7 @@ use super::atlas::Reference;
 use super::cells::{Contacts, Found, Labels, Neighborhoods};
 use super::charts::ChartSpace;
 use super::curve_ends;
-use super::distances::within_charts;
+use super::distances::{Asked, within_charts};
 use super::landmarks;
 use super::producer::WaistProducer;
 use super::skeleton::Skeleton;
@@ -15,6 +15,7 @@ use crosscap_core::{
     CellNeighborhood, Error, Landmark, LandmarkSelector, PointCloud, Row, Scalar,
     StratifiedLandmarks, Table, positive_length,
 };
+use std::sync::{Mutex, PoisonError};
 
 /// Parameters of the stratification.
 #[derive(Clone, Debug)]
@@ -48,6 +49,8 @@ pub struct Cut<'a, 'p, S: Scalar> {
     charts: ChartSpace<'a, S>,
     pub(super) options: StratifyOptions,
     models: Vec<ModelCounts>,
+    /// What the last waist asked for.
+    asked: Mutex<Asked<S>>,
 }
 
 impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
@@ -88,7 +91,9 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
         options: &StratifyOptions,
     ) -> Result<Self, Error> {
         options.check()?;
-        if let Some(space) = charts.space() {
+        // The analysis has looked at its own space.
+        let own = &analyzer.space;
+        if let Some(space) = charts.space().filter(|space| !space.is_same_as(own)) {
             space.audit_metric()?;
         }
         let Analyzer {
@@ -116,6 +121,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
             charts,
             options: options.clone(),
             models,
+            asked: Mutex::default(),
         })
     }
 
@@ -152,6 +158,7 @@ impl<'a, 'p, S: Scalar> Cut<'a, 'p, S> {
             charts,
             options: options.clone(),
             models: Vec::new(),
+            asked: Mutex::default(),
         })
     }
 
@@ -215,13 +222,16 @@ impl<S: Scalar> WaistProducer<S> for Cut<'_, '_, S> {
             cut_edges,
             ..
         } = self.around(&rows).find(&|_| true)?;
+        let mut asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
         let distances = within_charts(
             self.analyzer,
             &self.strata,
             &self.charts,
             &rows,
             &neighborhoods,
+            &mut asked,
         )?;
+        drop(asked);
         let edges = self.skeleton.edges().to_vec();
         let waist = StratifiedLandmarks::new(strata, edges, neighborhoods, distances)?;
         let mut out = Stratification::new(waist, rows);
