@@ -15,14 +15,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// What tangent planes depend on.
 #[derive(Clone, PartialEq)]
 struct PlanesOf {
-    cloud: PointCloud<f64>,
+    cloud: Arc<PointCloud<f64>>,
     tuning: TangentTuning,
 }
 
 /// What paths depend on.
 #[derive(Clone, PartialEq)]
 struct PathsOf {
-    cloud: PointCloud<f64>,
+    cloud: Arc<PointCloud<f64>>,
     graph: EdgeRule,
     /// What the planes that join points of one sheet depend on, where they do.
     sheets: Option<PlanesOf>,
@@ -57,7 +57,7 @@ impl Kept {
     ) -> Result<Arc<TangentField>, Error> {
         let cloud = oracle.cloud();
         let of = PlanesOf {
-            cloud: (**cloud).clone(),
+            cloud: cloud.clone(),
             tuning: *tuning,
         };
         let make = || TangentField::new(cloud.clone(), oracle, tuning, threads);
@@ -75,7 +75,7 @@ impl Kept {
         sheets: Option<(&TangentField, &TangentTuning)>,
         threads: &Threads,
     ) -> Result<Arc<GeodesicMetric<f64>>, Error> {
-        let cloud = &**oracle.cloud();
+        let cloud = oracle.cloud();
         let of = PathsOf {
             cloud: cloud.clone(),
             graph,
