@@ -13,19 +13,19 @@ use crosscap_core::{Error, PointCloud};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// What tangent planes depend on.
-#[derive(Clone, PartialEq)]
+#[derive(PartialEq)]
 struct PlanesOf {
     cloud: Arc<PointCloud<f64>>,
     tuning: TangentTuning,
 }
 
 /// What paths depend on.
-#[derive(Clone, PartialEq)]
+#[derive(PartialEq)]
 struct PathsOf {
     cloud: Arc<PointCloud<f64>>,
     graph: EdgeRule,
-    /// What the planes that join points of one sheet depend on, where they do.
-    sheets: Option<PlanesOf>,
+    /// How the planes that join points of one sheet are laid through the same cloud, where they do.
+    sheets: Option<TangentTuning>,
 }
 
 /// One thing with all that it depends on.
@@ -79,10 +79,7 @@ impl Kept {
         let of = PathsOf {
             cloud: cloud.clone(),
             graph,
-            sheets: sheets.map(|(_, tuning)| PlanesOf {
-                cloud: cloud.clone(),
-                tuning: *tuning,
-            }),
+            sheets: sheets.map(|(_, tuning)| *tuning),
         };
         let joins = |a, b| sheets.is_none_or(|(planes, _)| planes.joins(a, b));
         let make = || threads.install(|| GeodesicMetric::joining(oracle, graph, &joins));
